@@ -1,0 +1,86 @@
+// What a chapter is to the framework: facts about itself, knobs, and a program that records its passes.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/app/camera.hpp"
+#include "common/gpu/commands.hpp"
+#include "common/gpu/pipeline.hpp"
+#include "common/gpu/timer.hpp"
+#include "common/knobs.hpp"
+#include "common/scene/scene.hpp"
+
+namespace welkin::app {
+
+// How a picture becomes 8 bits until chapter 06 teaches it: values as they are, or 1 - exp(-exposure L) and sRGB.
+enum class Display { raw, exposed };
+
+// A picture a chapter is measured and tested by.
+struct StandardView {
+  std::string scene;
+  std::string view;
+};
+
+// What a program may use for as long as it lives. Scene and settings change under it between frames.
+struct Context {
+  const gpu::Device& device;
+  const Scene& scene;
+  const Settings& settings;
+  const std::string& inject;  // --inject FAULT
+};
+
+// What a program gets for one frame.
+struct Frame {
+  VkCommandBuffer commands;
+  const gpu::Image& target;  // rgba32f storage image; draw() writes all of it and leaves it in layout GENERAL
+  const CameraRays& camera;
+  gpu::Timer& timer;
+  uint32_t index;
+  uint32_t seed;
+};
+
+// A ray of --probe, in degrees as in the file; relative azimuth 0 looks towards the sun.
+struct ProbeRay {
+  double altitude_km, view_zenith_deg, sun_zenith_deg, relative_azimuth_deg;
+};
+struct ProbeResult {
+  glm::dvec3 radiance, transmittance;
+};
+
+// A running chapter.
+struct Program {
+  virtual ~Program() = default;
+  // The image draw() writes: called before the first draw and after every resize, when no frame is in flight.
+  virtual void set_target(const gpu::Image& target) = 0;
+  // Records the passes of one frame, each timed, with their barriers.
+  virtual void draw(const Frame& frame) = 0;
+  // Makes the pipelines anew: a knob marked `rebuilds` changed, or a shader was recompiled. No frame is in flight.
+  virtual void rebuild() = 0;
+  // Radiance and transmittance along rays, in the order given. Chapters without a sky have none.
+  virtual std::vector<ProbeResult> probe(std::span<const ProbeRay> rays);
+};
+
+struct Chapter {
+  int number = 0;
+  std::string name;       // "05_single_scattering"
+  std::string title;      // "Single scattering"
+  std::string whats_new;  // one line for --help and the panel
+  std::string try_next;   // a command worth typing after the first picture
+  Display display = Display::exposed;
+  bool sky = false;       // has scene knobs (mie.g, sun.zenith_deg, …)
+  std::vector<Knob> knobs;
+  std::vector<std::pair<std::string, std::string>> reference;  // knob values the sweep's reference is drawn with
+  std::string default_scene = "noon";
+  std::vector<StandardView> standard_views;
+  std::function<std::unique_ptr<Program>(const Context&)> make;
+};
+
+// main() of every chapter: command line, device, and whichever of picture, window or instrument was asked for.
+int run(int argc, char** argv, const Chapter& chapter);
+
+}  // namespace welkin::app

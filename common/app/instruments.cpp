@@ -1,0 +1,231 @@
+// The measuring modes: --bench, --sweep, --probe, --golden.
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+
+#include "common/app/progress.hpp"
+#include "common/app/session.hpp"
+#include "common/gpu/shader_file.hpp"
+#include "common/image/atomic_file.hpp"
+#include "common/image/csv.hpp"
+#include "common/image/display.hpp"
+#include "common/image/exr.hpp"
+#include "common/measure/bench_json.hpp"
+#include "common/measure/metrics.hpp"
+#include "common/measure/sweep.hpp"
+
+namespace welkin::app {
+namespace {
+
+constexpr uint32_t kWarmUp = 3;
+constexpr uint32_t kRepeats = 20;
+constexpr double kTimedSeconds = 3.0;  // no setting is repeated longer than this
+constexpr VkExtent2D kSweepSize{320, 180};
+constexpr VkExtent2D kGoldenSize{128, 72};
+// How far another driver may be from a golden: see docs/hard_cases.md for the measured differences this leaves room for.
+constexpr double kGoldenRelativeRmse = 2e-3;
+constexpr double kGoldenP99 = 5e-3;
+
+std::string now_utc() {
+  const std::time_t now = std::time(nullptr);
+  std::tm parts{};
+  gmtime_r(&now, &parts);
+  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", parts.tm_year + 1900, parts.tm_mon + 1, parts.tm_mday,
+                     parts.tm_hour, parts.tm_min, parts.tm_sec);
+}
+
+struct Timings {
+  std::vector<measure::PassTime> passes;
+  measure::Spread gpu, wall;
+};
+
+// Warm-up, then repeated frames until `repeats` or kTimedSeconds, at least 3.
+Timings time_frames(const Session& session, Renderer& renderer, const CameraPose& pose, uint32_t warm_up, uint32_t repeats) {
+  using Clock = std::chrono::steady_clock;
+  for (uint32_t i = 0; i < warm_up; ++i) renderer.draw(pose, session.options.time_s, session.options.seed, i);
+  std::vector<std::string> names;
+  std::vector<std::vector<double>> per_pass;
+  std::vector<double> gpu, wall;
+  const Clock::time_point start = Clock::now();
+  for (uint32_t i = 0; i < repeats; ++i) {
+    const Clock::time_point before = Clock::now();
+    renderer.draw(pose, session.options.time_s, session.options.seed, warm_up + i);
+    wall.push_back(std::chrono::duration<double, std::milli>(Clock::now() - before).count());
+    double sum = 0.0;
+    const std::vector<gpu::PassTime> times = renderer.pass_times();
+    per_pass.resize(times.size());
+    names.clear();
+    for (size_t pass = 0; pass < times.size(); ++pass) {
+      per_pass[pass].push_back(times[pass].milliseconds);
+      names.push_back(times[pass].name);
+      sum += times[pass].milliseconds;
+    }
+    gpu.push_back(sum);
+    if (i >= 2 && std::chrono::duration<double>(Clock::now() - start).count() > kTimedSeconds) break;
+  }
+  Timings timings{.gpu = measure::spread(gpu), .wall = measure::spread(wall)};
+  for (size_t pass = 0; pass < names.size(); ++pass) timings.passes.push_back({names[pass], measure::spread(per_pass[pass])});
+  return timings;
+}
+
+// Another scene and settings in a session of the same device.
+struct OtherScene {
+  Scene scene;
+  Settings settings;
+  Options options;
+  Session session;
+  OtherScene(const Session& from, const StandardView& view)
+      : options(from.options),
+        session{from.chapter, options, scene, settings, from.instance, from.device, {from.device, scene, settings, options.inject}} {
+    options.view = view.view;
+    load_scene_and_settings(from.chapter, view.scene, options.set, scene, settings);
+  }
+  OtherScene(const OtherScene&) = delete;
+};
+
+void must_have_standard_views(const Session& session) {
+  if (session.chapter.standard_views.empty()) fail("{} has no standard views to measure", session.chapter.name);
+}
+
+}  // namespace
+
+Exit run_bench(const Session& session) {
+  const std::unique_ptr<Program> program = session.make_program();
+  Renderer renderer(session.context, session.chapter, *program, session.options.size);
+  const uint32_t repeats = session.options.frames > 0 ? session.options.frames : kRepeats;
+  const CameraPose pose = session.first_pose();
+  const Timings timings = time_frames(session, renderer, pose, kWarmUp, repeats);
+  const gpu::Candidate& device = session.device.candidate();
+  measure::BenchResult result{session.chapter.name, session.scene.name, session.scene.view(session.options.view).name, device.name,
+                              device.driver, device.software, renderer.size().width, renderer.size().height, {}, timings.passes,
+                              timings.wall, session.device.allocated_bytes(), static_cast<int>(kWarmUp),
+                              static_cast<int>(timings.wall.samples), now_utc()};
+  for (const Knob& knob : session.settings.knobs()) result.settings[knob.name] = session.settings.text(knob.name);
+  if (!session.options.output.empty()) write_output(session, session.options.output, pose, renderer.picture(), renderer.displayed());
+  measure::write_bench(session.options.bench, result);
+  fmt::print("{}", measure::bench_table(result));
+  return Exit::ok;
+}
+
+Exit run_sweep(const Session& session) {
+  must_have_standard_views(session);
+  const VkExtent2D size = session.options.size_given ? session.options.size : kSweepSize;
+  const gpu::Candidate& device = session.device.candidate();
+  std::vector<measure::SweepRow> rows;
+  const size_t rungs = measure::ladder_settings(session.settings).size();
+  Progress progress("sweep", rungs * session.chapter.standard_views.size());
+  for (const StandardView& standard : session.chapter.standard_views) {
+    OtherScene other(session, standard);
+    const std::vector<std::vector<double>> ladder = measure::ladder_settings(other.settings);
+    const Settings base = other.settings;
+    const std::unique_ptr<Program> program = other.session.make_program();
+    Renderer renderer(other.session.context, session.chapter, *program, size);
+    const CameraPose pose = other.session.first_pose();
+    const float exposure = static_cast<float>(kBaseExposure * std::exp2(other.scene.post.exposure_ev));
+    const auto display = [&](const glm::vec3& value) { return image::display(value, exposure); };
+
+    for (const auto& [name, text] : session.chapter.reference) other.settings.set(name, text);
+    program->rebuild();
+    renderer.draw(pose, session.options.time_s, session.options.seed, 0);
+    const Image reference = renderer.picture();
+
+    for (const std::vector<double>& values : ladder) {
+      other.settings = measure::with_values(base, values);
+      program->rebuild();
+      const Timings timings = time_frames(other.session, renderer, pose, 1, device.software ? 3 : kRepeats);
+      measure::SweepRow row{.view = standard.scene + "/" + standard.view, .gpu_ms = timings.gpu, .wall_ms = timings.wall,
+                            .bytes = session.device.allocated_bytes(),
+                            .errors = measure::compare(renderer.picture(), reference, display)};
+      for (const Knob& knob : session.chapter.knobs) row.values.push_back(other.settings.text(knob.name));
+      for (const measure::PassTime& pass : timings.passes) row.passes.emplace_back(pass.name, pass.ms.median);
+      rows.push_back(std::move(row));
+      progress.step();
+    }
+  }
+  std::string reference;
+  for (const auto& [name, text] : session.chapter.reference) reference += (reference.empty() ? "" : " ") + name + "=" + text;
+  measure::write_sweep_csv(session.options.sweep, session.chapter.knobs, rows,
+                           {session.chapter.name, "standard views", device.name, device.driver, device.software, size.width,
+                            size.height, reference, now_utc()});
+  fmt::print("{} settings x {} views -> {}\n", rungs, session.chapter.standard_views.size(), session.options.sweep);
+  return Exit::ok;
+}
+
+Exit run_probe(const Session& session) {
+  const std::vector<std::string> inputs{"altitude_km", "view_zenith_deg", "sun_zenith_deg", "relative_azimuth_deg"};
+  const CsvTable table = read_csv(session.options.probe, inputs);
+  std::vector<ProbeRay> rays(table.rows);
+  const auto fill = [&](const char* name, double ProbeRay::*field, double low, double high) {
+    const std::vector<double>& column = table.column(name);
+    for (size_t row = 0; row < table.rows; ++row) {
+      if (!(column[row] >= low && column[row] <= high))
+        fail("{}: row {}: {} is {:g}; accepted is {:g} to {:g}", session.options.probe, row + 1, name, column[row], low, high);
+      rays[row].*field = column[row];
+    }
+  };
+  fill("altitude_km", &ProbeRay::altitude_km, 0.0, 500000.0);
+  fill("view_zenith_deg", &ProbeRay::view_zenith_deg, 0.0, 180.0);
+  fill("sun_zenith_deg", &ProbeRay::sun_zenith_deg, 0.0, 180.0);
+  fill("relative_azimuth_deg", &ProbeRay::relative_azimuth_deg, -360.0, 360.0);
+
+  const std::vector<ProbeResult> results = session.make_program()->probe(rays);
+  std::vector<std::string> names = inputs;
+  for (const char* name : {"radiance_r", "radiance_g", "radiance_b", "transmittance_r", "transmittance_g", "transmittance_b"}) names.push_back(name);
+  std::vector<std::vector<std::string>> rows(table.rows);
+  for (size_t row = 0; row < table.rows; ++row) {
+    for (const std::string& name : inputs) rows[row].push_back(table.fields[table.index(name)][row]);  // as they were written
+    for (int c = 0; c < 3; ++c) rows[row].push_back(fmt::format("{:.9e}", results[row].radiance[c]));
+    for (int c = 0; c < 3; ++c) rows[row].push_back(fmt::format("{:.9e}", results[row].transmittance[c]));
+  }
+  write_csv(session.options.probe_out,
+            {fmt::format("{} scene {}, {} ({})", session.chapter.name, session.scene.name, session.device.candidate().name, session.device.candidate().driver),
+             "radiance per unit solar irradiance, without the sun's disc"},
+            names, rows);
+  fmt::print("{} rays -> {}\n", table.rows, session.options.probe_out);
+  return Exit::ok;
+}
+
+// [golden]
+Exit run_golden(const Session& session) {
+  must_have_standard_views(session);
+  const std::filesystem::path directory = gpu::source_directory() / "tests" / "data" / "golden";
+  const std::string driver = session.device.candidate().driver;
+  Exit result = Exit::ok;
+  for (const StandardView& standard : session.chapter.standard_views) {
+    OtherScene other(session, standard);
+    const std::unique_ptr<Program> program = other.session.make_program();
+    Renderer renderer(other.session.context, session.chapter, *program, kGoldenSize);
+    renderer.draw(other.session.first_pose(), session.options.time_s, session.options.seed, 0);
+    const Image picture = renderer.picture();
+    const std::string name = fmt::format("{:02}_{}_{}", session.chapter.number, standard.scene, standard.view);
+    const std::filesystem::path file = directory / (name + ".exr"), recorded = directory / (name + ".driver");
+    const bool exists = std::filesystem::exists(file);
+    if (!exists && session.options.golden == Golden::check) {
+      fmt::print("golden {}: missing; look at the picture, then --golden update\n", name);
+      result = Exit::mismatch;
+      continue;
+    }
+    if (exists) {
+      // Bit for bit on the driver that made it; elsewhere arithmetic differs in the last places.
+      const bool same_driver = std::filesystem::exists(recorded) && read_file(recorded, 4096) == driver + "\n";
+      const Image golden = image::read_exr(file);
+      const measure::Errors errors = measure::compare(picture, golden, [](const glm::vec3& v) { return image::display(v, kBaseExposure); });
+      const bool identical = errors.finite() && errors.max_relative == 0.0;
+      const bool close = errors.finite() && errors.relative_rmse <= kGoldenRelativeRmse && errors.p99_relative <= kGoldenP99;
+      const bool good = same_driver ? identical : close;
+      fmt::print("golden {}: {} ({}; {})\n", name, identical ? "identical" : good ? "close" : "DIFFERS", measure::describe(errors),
+                 same_driver ? "driver of the golden" : "another driver");
+      if (!good && session.options.golden == Golden::check) result = Exit::mismatch;
+    }
+    if (session.options.golden == Golden::update) {
+      image::write_exr(file, picture);
+      write_file_atomically(recorded, driver + "\n");
+      fmt::print("golden {}: written\n", name);
+    }
+  }
+  return result;
+}
+// [/golden]
+
+}  // namespace welkin::app

@@ -1,0 +1,49 @@
+// The panel: chapter, knobs, sun, time per pass, memory. Everything of Dear ImGui is in panel.cpp.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/app/camera.hpp"
+#include "common/app/chapter.hpp"
+#include "common/app/swapchain.hpp"
+
+struct GLFWwindow;
+
+namespace welkin::app {
+
+// What the panel shows and what the user did with it.
+struct PanelState {
+  bool visible = true;
+  bool flying = false;
+  std::string message;               // shader error, "saved …": shown until the next
+  std::vector<gpu::PassTime> times;  // of the last finished frame
+  double time_s = 0.0;               // scene time, moved by the slider
+  std::vector<std::string> changed;  // knobs changed since the last frame
+};
+
+class Panel {
+ public:
+  // The library and the window outlive the panel. Needs a render pass (Dear ImGui 1.86 knows no dynamic rendering).
+  Panel(GLFWwindow* window, const gpu::Instance& instance, const gpu::Device& device, const WindowSwapchain& swapchain);
+  ~Panel();
+  Panel(const Panel&) = delete;
+  Panel& operator=(const Panel&) = delete;
+
+  void swapchain_changed(const WindowSwapchain& swapchain);
+  bool wants_mouse() const;
+  bool wants_keyboard() const;
+
+  // Lays the panel out; may change settings (recording names in state.changed) and the time.
+  void layout(const Chapter& chapter, const Scene& scene, Settings& settings, const gpu::Device& device, const CameraPose& pose, PanelState& state);
+  // Draws over the image, which is in COLOR_ATTACHMENT_OPTIMAL and ends in PRESENT_SRC.
+  void record(VkCommandBuffer commands, uint32_t image_index);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace welkin::app

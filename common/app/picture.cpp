@@ -1,0 +1,100 @@
+// Headless modes that end with a picture: the picture itself, --dump, --against, --explain.
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+
+#include "common/app/session.hpp"
+#include "common/app/progress.hpp"
+#include "common/image/display.hpp"
+#include "common/image/exr.hpp"
+#include "common/image/png.hpp"
+#include "common/measure/bench_json.hpp"
+#include "common/measure/metrics.hpp"
+
+namespace welkin::app {
+namespace {
+
+constexpr VkExtent2D kHeadlessSize{1280, 720};
+
+size_t count_not_finite(const Image& picture) {
+  size_t count = 0;
+  for (const glm::vec4& pixel : picture.pixels)
+    if (!std::isfinite(pixel.r) || !std::isfinite(pixel.g) || !std::isfinite(pixel.b)) ++count;
+  return count;
+}
+
+void print_times(const Session& session, Renderer& renderer) {
+  const gpu::Candidate& device = session.device.candidate();
+  fmt::print("{:02} {} · scene {} · {}x{} · {} ({}{})\n", session.chapter.number, session.chapter.title, session.scene.name,
+             renderer.size().width, renderer.size().height, device.name, device.driver, device.software ? ", software" : "");
+  double total = 0.0;
+  for (const gpu::PassTime& pass : renderer.pass_times()) {
+    fmt::print("  {:<20} {:>10.3f} ms\n", pass.name, pass.milliseconds);
+    total += pass.milliseconds;
+  }
+  fmt::print("  {:<20} {:>10.3f} ms   {} held\n", "total", total, measure::human_bytes(session.device.allocated_bytes()));
+}
+
+void explain(const Session& session, Renderer& renderer, uint64_t allocations_by_later_frames) {
+  fmt::print("effects of scene {}:\n", session.scene.name);
+  for (const Effect& effect : effects(session.scene)) fmt::print("  {:<14} {:<4} {}\n", effect.name, effect.on ? "on" : "off", effect.why);
+  fmt::print("passes:\n");
+  for (const gpu::PassTime& pass : renderer.pass_times()) fmt::print("  {:<20} {:>10.3f} ms\n", pass.name, pass.milliseconds);
+  fmt::print("memory:\n");
+  for (const gpu::Allocation& allocation : session.device.allocations()) fmt::print("  {:<20} {:>12} bytes\n", allocation.name, allocation.bytes);
+  fmt::print("  {:<20} {:>12} bytes\nallocations by frames after the first: {}\n", "total", session.device.allocated_bytes(), allocations_by_later_frames);
+}
+
+Exit compare_with(const Session& session, const Image& picture, const Image& reference) {
+  const float exposure = static_cast<float>(kBaseExposure * std::exp2(session.scene.post.exposure_ev));
+  const measure::Errors errors = measure::compare(picture, reference, [&](const glm::vec3& value) { return image::display(value, exposure); });
+  fmt::print("against {}: {}\n", session.options.against, measure::describe(errors));
+  return errors.finite() ? Exit::ok : Exit::mismatch;
+}
+
+}  // namespace
+
+Exit run_picture(const Session& session) {
+  const Options& options = session.options;
+  std::optional<Image> reference;
+  if (!options.against.empty()) reference = image::read_exr(options.against);  // said before the work is done
+  const std::string file = options.output.empty() ? "out/" + session.chapter.name + ".png" : options.output;
+  const bool writes = !options.output.empty() || (!options.explain && options.against.empty() && options.dump_what.empty());
+
+  const std::unique_ptr<Program> program = session.make_program();
+  // Drivers compile a shader at its first dispatch: a picture of one workgroup takes that out of the times shown.
+  Renderer(session.context, session.chapter, *program, {8, 8}).draw(session.first_pose(), options.time_s, options.seed, 0);
+  Renderer renderer(session.context, session.chapter, *program, options.size_given ? options.size : kHeadlessSize);
+  const CameraPose pose = session.first_pose();
+  const uint32_t frames = std::max(options.frames, options.explain ? 2u : 1u);
+  uint64_t allocations = 0;
+  Progress progress("drawing", frames);
+  for (uint32_t i = 0; i < frames; ++i) {
+    renderer.draw(pose, options.time_s, options.seed, i);
+    if (i == 0) allocations = session.device.allocation_count();
+    progress.step();
+  }
+  allocations = session.device.allocation_count() - allocations;
+
+  const Image picture = renderer.picture();
+  const size_t not_finite = count_not_finite(picture);
+  if (options.dump_what == "picture") image::write_exr(options.dump_file, picture);
+  if (options.dump_what == "displayed") image::write_png8(options.dump_file, renderer.displayed());
+  if (writes) {
+    if (options.output.empty()) std::filesystem::create_directories("out");
+    write_output(session, file, pose, picture, renderer.displayed());
+  }
+  if (options.explain) explain(session, renderer, allocations);
+  else print_times(session, renderer);
+  if (writes) fmt::print("wrote {}\n", file);
+  if (writes && options.output.empty() && !session.chapter.try_next.empty()) fmt::print("next: {}\n", session.chapter.try_next);
+  const Exit compared = reference ? compare_with(session, picture, *reference) : Exit::ok;
+  if (not_finite > 0) {
+    std::fprintf(stderr, "%s: %zu pixels are not finite\n", session.chapter.name.c_str(), not_finite);
+    return Exit::mismatch;
+  }
+  return compared;
+}
+
+}  // namespace welkin::app

@@ -1,0 +1,114 @@
+// Frame recording and readback. See renderer.hpp.
+#include "common/app/renderer.hpp"
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace welkin::app {
+namespace {
+
+struct DisplayPush {
+  int32_t size[2];
+  float exposure;
+  int32_t mode;
+};
+
+// Copies an image into host memory and hands the bytes over.
+template <typename T>
+void read_back(const gpu::Device& device, VkCommandPool pool, const gpu::Image& image, std::vector<T>& out) {
+  const gpu::Buffer buffer = gpu::create_buffer(device, "readback", out.size() * sizeof(T), VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Where::readback);
+  gpu::run_once(device, pool, [&](VkCommandBuffer commands) {
+    gpu::image_barrier(commands, image.handle, gpu::kComputeWrite, gpu::kTransferRead);
+    gpu::copy_image_to_buffer(commands, image, buffer);
+    gpu::buffer_barrier(commands, buffer.handle, gpu::kTransferWrite, gpu::kHostRead);
+    gpu::image_barrier(commands, image.handle, gpu::kTransferRead, gpu::kComputeRead);
+  });
+  std::memcpy(out.data(), buffer.mapped, out.size() * sizeof(T));
+}
+
+}  // namespace
+
+std::vector<ProbeResult> Program::probe(std::span<const ProbeRay>) { fail("--probe: this chapter has no sky to ask; chapter 05 and later do"); }
+
+DisplayPass::DisplayPass(const gpu::Device& device)
+    : pipeline_(gpu::create_compute_pipeline(device, "app/display.comp", {{0}, {1}}, sizeof(DisplayPush))),
+      set_(gpu::create_descriptor_set(device, pipeline_.set_layout, pipeline_.bindings)) {}
+
+void DisplayPass::set_images(const gpu::Device& device, const gpu::Image& picture, const gpu::Image& displayed) {
+  gpu::write_storage_image(device, set_, 0, picture);
+  gpu::write_storage_image(device, set_, 1, displayed);
+}
+
+void DisplayPass::record(VkCommandBuffer commands, VkExtent2D size, Display mode, double exposure_ev) const {
+  const DisplayPush push{{static_cast<int32_t>(size.width), static_cast<int32_t>(size.height)},
+                         static_cast<float>(kBaseExposure * std::exp2(exposure_ev)),
+                         mode == Display::exposed ? 1 : 0};
+  gpu::dispatch_over(commands, pipeline_, set_, push, size);
+}
+
+Targets create_targets(const gpu::Device& device, VkExtent2D size) {
+  return {gpu::create_image(device, "picture", size, VK_FORMAT_R32G32B32A32_SFLOAT, VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT),
+          gpu::create_image(device, "displayed", size, VK_FORMAT_R8G8B8A8_UNORM, VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT)};
+}
+
+// [frame]
+void record_frame(const Context& context, const Chapter& chapter, Program& program, const DisplayPass& display,
+                  const Targets& targets, const Frame& frame) {
+  frame.timer.begin_frame(frame.commands);
+  program.draw(frame);
+  // The display pass reads what the chapter wrote; leaving this out is the fault the synchronization test plants.
+  if (context.inject != "missing-barrier")
+    gpu::image_barrier(frame.commands, targets.picture.handle, gpu::kComputeWrite, gpu::kComputeRead);
+  // The old content of the displayed picture is not needed, but whoever read it last must have finished.
+  constexpr gpu::Use read_before{VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_COPY_BIT};
+  gpu::image_barrier(frame.commands, targets.displayed.handle, read_before, gpu::kComputeWrite);
+  const gpu::TimedPass pass(frame.timer, frame.commands, "display");
+  display.record(frame.commands, targets.picture.size, chapter.display, context.scene.post.exposure_ev);
+}
+// [/frame]
+
+Renderer::Renderer(const Context& context, const Chapter& chapter, Program& program, VkExtent2D size)
+    : context_(context),
+      chapter_(chapter),
+      program_(program),
+      pool_(gpu::create_command_pool(context.device)),
+      commands_(gpu::allocate_commands(context.device, pool_)),
+      timer_(context.device),
+      display_(context.device),
+      targets_(create_targets(context.device, size)) {
+  display_.set_images(context.device, targets_.picture, targets_.displayed);
+  program_.set_target(targets_.picture);
+}
+
+void Renderer::draw(const CameraPose& pose, double time_s, uint32_t seed, uint32_t index) {
+  const CameraRays camera = camera_rays(pose, context_.scene, time_s, {size().width, size().height}, seed, index);
+  gpu::begin_commands(commands_);
+  record_frame(context_, chapter_, program_, display_, targets_, {commands_, targets_.picture, camera, timer_, index, seed});
+  gpu::end_commands(commands_);
+  gpu::submit_and_wait(context_.device, commands_);
+}
+
+Image read_picture(const gpu::Device& device, VkCommandPool pool, const gpu::Image& image) {
+  Image picture{image.size.width, image.size.height, {}};
+  picture.pixels.resize(size_t{image.size.width} * image.size.height);
+  read_back(device, pool, image, picture.pixels);
+  return picture;
+}
+
+Image8 read_displayed(const gpu::Device& device, VkCommandPool pool, const gpu::Image& image) {
+  Image8 picture{image.size.width, image.size.height, {}};
+  picture.rgba.resize(size_t{4} * image.size.width * image.size.height);
+  read_back(device, pool, image, picture.rgba);
+  return picture;
+}
+
+Image Renderer::picture() {
+  Image picture = read_picture(context_.device, pool_, targets_.picture);
+  if (context_.inject == "nan") picture.pixels.front().r = std::numeric_limits<float>::quiet_NaN();
+  return picture;
+}
+
+Image8 Renderer::displayed() { return read_displayed(context_.device, pool_, targets_.displayed); }
+
+}  // namespace welkin::app

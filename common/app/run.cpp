@@ -1,0 +1,120 @@
+// main() of every chapter: from the command line to the mode asked for, and from any Error to one line and an exit code.
+#include <cstdio>
+#include <cstdlib>
+
+#include "common/app/session.hpp"
+#include "common/app/window.hpp"
+#include "common/gpu/shader_file.hpp"
+#include "common/image/atomic_file.hpp"
+#include "common/image/png.hpp"
+#include "common/image/exr.hpp"
+#include "common/measure/knobs_json.hpp"
+#include "common/scene/scene_knobs.hpp"
+
+namespace welkin::app {
+namespace {
+
+bool display_announced() {
+  const auto set = [](const char* name) { const char* value = std::getenv(name); return value != nullptr && *value != '\0'; };
+  return set("DISPLAY") || set("WAYLAND_DISPLAY");
+}
+
+void print_devices(const std::vector<gpu::Candidate>& candidates) {
+  for (size_t i = 0; i < candidates.size(); ++i)
+    fmt::print("{} {} ({}){}{}\n", i, candidates[i].name, candidates[i].driver, candidates[i].software ? " software" : "",
+               candidates[i].lacks.empty() ? "" : fmt::format(" lacks {}", fmt::join(candidates[i].lacks, ", ")));
+}
+
+Exit run_mode(const Chapter& chapter, Options& options) {
+  const bool instrument = !options.bench.empty() || !options.sweep.empty() || !options.probe.empty() ||
+                          options.golden != Golden::none || options.explain || !options.against.empty() || !options.dump_what.empty();
+  Scene scene;
+  Settings settings;
+  load_scene_and_settings(chapter, options.scene.empty() ? chapter.default_scene : options.scene, options.set, scene, settings);
+  scene.view(options.view);  // an unknown view is said before any device is looked for
+  if (options.dump_what == "knobs") {
+    measure::write_knobs_json(options.dump_file, chapter.name, settings.knobs());
+    return Exit::ok;
+  }
+
+  // [devices]
+  const bool windowed = !options.headless && !instrument && !options.list_gpus && display_announced();
+  const std::unique_ptr<WindowLibrary> library = windowed ? std::make_unique<WindowLibrary>() : nullptr;
+  gpu::Instance instance(options.validation, windowed ? library->vulkan_extensions() : std::vector<const char*>{});
+  const std::vector<gpu::Candidate> candidates = gpu::list_devices(instance, options.inject);
+  if (options.list_gpus) {
+    print_devices(candidates);
+    return Exit::ok;
+  }
+  gpu::Device device(instance, gpu::choose_device(candidates, options.gpu), windowed);
+  // [/devices]
+
+  Session session{chapter, options, scene, settings, instance, device, {device, scene, settings, options.inject}};
+  Exit result = Exit::ok;
+  if (options.golden != Golden::none) result = run_golden(session);
+  else if (!options.probe.empty()) result = run_probe(session);
+  else if (!options.sweep.empty()) result = run_sweep(session);
+  else if (!options.bench.empty()) result = run_bench(session);
+  else if (windowed) result = run_window(session);
+  else result = run_picture(session);
+
+  if (result == Exit::ok && !instance.validation_messages().empty()) {
+    std::fprintf(stderr, "%s: %zu validation message(s)\n", chapter.name.c_str(), instance.validation_messages().size());
+    result = Exit::validation;
+  }
+  return result;
+}
+
+}  // namespace
+
+std::filesystem::path scenes_directory() { return gpu::source_directory() / "chapters" / "scenes"; }
+
+void load_scene_and_settings(const Chapter& chapter, const std::string& scene_name,
+                             const std::vector<std::pair<std::string, std::string>>& set, Scene& scene, Settings& settings) {
+  scene = load_scene(scene_name, scenes_directory());
+  std::vector<Knob> knobs = chapter.knobs;
+  if (chapter.sky)
+    for (Knob& knob : scene_knobs(scene)) knobs.push_back(std::move(knob));
+  settings = Settings(std::move(knobs));
+  // A picture of another chapter may carry knobs this one lacks: the scene's are hints, the command line's are orders.
+  for (const auto& [name, text] : scene.settings)
+    if (settings.has(name)) settings.set(name, text);
+  for (const auto& [name, text] : set) settings.set(name, text);
+  apply_scene_knobs(settings, scene);
+}
+
+std::string restoring_text(const Session& session, const CameraPose& pose) {
+  Scene scene = session.scene;
+  const SunPlace sun = advance_sun(scene.sun.zenith_deg, scene.sun.azimuth_deg, scene.sun.latitude_deg, session.options.time_s);
+  scene.sun.zenith_deg = sun.zenith_deg, scene.sun.azimuth_deg = sun.azimuth_deg;
+  std::erase_if(scene.views, [](const View& view) { return view.name == "restored"; });
+  scene.views.insert(scene.views.begin(), view_of(pose, scene.planet.ground_radius_km));
+  scene.settings.clear();
+  for (const Knob& knob : session.chapter.knobs)
+    if (session.settings.was_set(knob.name)) scene.settings.emplace_back(knob.name, session.settings.text(knob.name));
+  return write_scene(scene);
+}
+
+void write_output(const Session& session, const std::string& file, const CameraPose& pose, const Image& picture, const Image8& displayed) {
+  if (file.ends_with(".exr")) return image::write_exr(file, picture);
+  image::write_png8(file, displayed, {{"welkin.scene", restoring_text(session, pose)}, {"welkin.chapter", session.chapter.name}});
+}
+
+int run(int argc, char** argv, const Chapter& chapter) {
+  bool require_gpu = false;
+  try {
+    Options options;
+    if (!parse_options(argc, argv, chapter, options)) return static_cast<int>(Exit::ok);
+    require_gpu = options.require_gpu;
+    return static_cast<int>(run_mode(chapter, options));
+  } catch (const Error& error) {
+    const bool skipped = error.exit_code == Exit::skipped && !require_gpu;
+    std::fprintf(stderr, "%s: %s%s\n", chapter.name.c_str(), skipped ? "skipped: " : "", error.what());
+    return static_cast<int>(error.exit_code == Exit::skipped && require_gpu ? Exit::usage : error.exit_code);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", chapter.name.c_str(), error.what());
+    return static_cast<int>(Exit::usage);
+  }
+}
+
+}  // namespace welkin::app

@@ -1,0 +1,273 @@
+// The window: GLFW, input, and the loop that draws frames until it is closed. See window.hpp.
+#include "common/app/window.hpp"
+
+#define GLFW_INCLUDE_NONE
+#include <vulkan/vulkan.h>
+
+#include <GLFW/glfw3.h>
+#include <dlfcn.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include "common/app/panel.hpp"
+#include "common/app/present.hpp"
+#include "common/app/session.hpp"
+#include "common/gpu/shader_file.hpp"
+#include "common/scene/scene_knobs.hpp"
+
+namespace welkin::app {
+namespace {
+
+constexpr VkExtent2D kSoftwareSize{640, 360};  // what a software driver draws a few times a second
+
+std::string last_glfw_error() {
+  const char* text = nullptr;
+  glfwGetError(&text);
+  return text != nullptr ? text : "no reason given";
+}
+
+// Xlib ends the process without a word of ours when the display goes away: say what happened, and mean the exit code.
+int on_display_lost(void*) {
+  std::fprintf(stderr, "the display was lost: the connection to the window system broke; --headless needs none\n");
+  _exit(static_cast<int>(Exit::usage));
+}
+
+void watch_display() {
+  void* xlib = dlopen("libX11.so.6", RTLD_LAZY | RTLD_NOLOAD);
+  if (xlib == nullptr) return;  // another window system
+  using SetHandler = int (*(*)(int (*)(void*)))(void*);
+  if (const auto set = reinterpret_cast<SetHandler>(dlsym(xlib, "XSetIOErrorHandler")); set != nullptr) set(on_display_lost);
+}
+
+struct Surface {
+  VkInstance instance;
+  VkSurfaceKHR handle = VK_NULL_HANDLE;
+  ~Surface() { vkDestroySurfaceKHR(instance, handle, nullptr); }
+};
+
+struct Window {
+  GLFWwindow* handle = nullptr;
+  bool resized = false;
+  std::vector<int> keys;             // pressed since the last frame
+  std::vector<std::string> dropped;  // files
+  double mouse_x = 0.0, mouse_y = 0.0;
+  ~Window() { glfwDestroyWindow(handle); }
+};
+
+Window& window_of(GLFWwindow* handle) { return *static_cast<Window*>(glfwGetWindowUserPointer(handle)); }
+
+void open_window(Window& window, const std::string& title, VkExtent2D size) {
+  glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
+  window.handle = glfwCreateWindow(static_cast<int>(size.width), static_cast<int>(size.height), title.c_str(), nullptr, nullptr);
+  if (window.handle == nullptr) fail("cannot open a window of {}x{}: {}; --headless needs none", size.width, size.height, last_glfw_error());
+  glfwSetWindowUserPointer(window.handle, &window);
+  glfwSetFramebufferSizeCallback(window.handle, [](GLFWwindow* w, int, int) { window_of(w).resized = true; });
+  glfwSetKeyCallback(window.handle, [](GLFWwindow* w, int key, int, int action, int) { if (action == GLFW_PRESS) window_of(w).keys.push_back(key); });
+  glfwSetDropCallback(window.handle, [](GLFWwindow* w, int count, const char** paths) { window_of(w).dropped.assign(paths, paths + count); });
+}
+
+// Framebuffer, not window, size: they differ on displays with a scale.
+VkExtent2D framebuffer_size(GLFWwindow* window) {
+  int width = 0, height = 0;
+  glfwGetFramebufferSize(window, &width, &height);
+  return {static_cast<uint32_t>(width), static_cast<uint32_t>(height)};
+}
+
+void move_camera(Window& window, const Panel& panel, PanelState& state, CameraPose& pose, double seconds, double ground_radius_km) {
+  double x = 0.0, y = 0.0;
+  glfwGetCursorPos(window.handle, &x, &y);
+  const bool dragging = glfwGetMouseButton(window.handle, GLFW_MOUSE_BUTTON_RIGHT) == GLFW_PRESS && !panel.wants_mouse();
+  if (state.flying || dragging) {
+    const double degrees_per_pixel = pose.fov_deg / framebuffer_size(window.handle).height;
+    turn(pose, (x - window.mouse_x) * degrees_per_pixel, (window.mouse_y - y) * degrees_per_pixel);
+  }
+  window.mouse_x = x, window.mouse_y = y;
+  if (!state.flying || panel.wants_keyboard()) return;
+  const auto down = [&](int key) { return glfwGetKey(window.handle, key) == GLFW_PRESS ? 1.0 : 0.0; };
+  const glm::dvec3 axes(down(GLFW_KEY_D) - down(GLFW_KEY_A), down(GLFW_KEY_W) - down(GLFW_KEY_S), down(GLFW_KEY_SPACE) - down(GLFW_KEY_LEFT_CONTROL));
+  if (axes != glm::dvec3(0.0)) fly(pose, axes, seconds, down(GLFW_KEY_LEFT_SHIFT) > 0.0, ground_radius_km);
+}
+
+// A running window: what its loop and its keys share.
+struct Loop {
+  Session& session;
+  Window& window;
+  WindowSwapchain swapchain;
+  std::unique_ptr<Program> program;
+  DisplayPass display;
+  PresentPass present;
+  Targets targets;
+  Panel panel;
+  PanelState state;
+  CameraPose pose;
+  gpu::CommandPool pool;  // for screenshots
+
+  Loop(Session& s, Window& w, VkSurfaceKHR surface)
+      : session(s), window(w), swapchain(s.device, surface, framebuffer_size(w.handle)), program(s.make_program()), display(s.device),
+        present(s.device, swapchain.format()), targets(create_targets(s.device, swapchain.size())),
+        panel(w.handle, s.instance, s.device, swapchain), pose(s.first_pose()), pool(gpu::create_command_pool(s.device)) {
+    state.time_s = s.options.time_s;
+    use_targets();
+  }
+  ~Loop() { swapchain.wait_for_all_frames(); }
+
+  void use_targets() {
+    display.set_images(session.device, targets.picture, targets.displayed);
+    present.set_image(session.device, targets.displayed);
+    program->set_target(targets.picture);
+  }
+
+  void resize() {
+    const VkExtent2D size = framebuffer_size(window.handle);
+    window.resized = false;
+    if (size.width == 0 || size.height == 0) return;  // minimised
+    swapchain.recreate(size);
+    panel.swapchain_changed(swapchain);
+    targets = create_targets(session.device, swapchain.size());
+    use_targets();
+  }
+
+  std::string save(std::string file) {
+    swapchain.wait_for_all_frames();
+    Session now = {session.chapter, session.options, session.scene, session.settings, session.instance, session.device, session.context};
+    write_output(now, file, pose, read_picture(session.device, pool, targets.picture), read_displayed(session.device, pool, targets.displayed));
+    return file;
+  }
+
+  void restore(const std::string& file) {
+    Scene scene;
+    Settings settings;
+    load_scene_and_settings(session.chapter, file, {}, scene, settings);  // throws before anything here changes
+    swapchain.wait_for_all_frames();
+    session.scene = std::move(scene);
+    session.settings = std::move(settings);
+    pose = pose_of(session.scene.view(""));
+    state.time_s = 0.0;
+    program->rebuild();
+  }
+
+  void on_key(int key);
+  bool draw(uint32_t index);
+};
+
+void Loop::on_key(int key) {
+  if (panel.wants_keyboard()) return;
+  switch (key) {
+    case GLFW_KEY_ESCAPE: glfwSetWindowShouldClose(window.handle, GLFW_TRUE); break;
+    case GLFW_KEY_H: state.visible = !state.visible; break;
+    case GLFW_KEY_F:
+      state.flying = !state.flying;
+      glfwSetInputMode(window.handle, GLFW_CURSOR, state.flying ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
+      glfwGetCursorPos(window.handle, &window.mouse_x, &window.mouse_y);
+      break;
+    case GLFW_KEY_P: {
+      std::filesystem::create_directories("out");
+      int number = 1;
+      const auto name = [&] { return fmt::format("out/{}_{:03}.png", session.chapter.name, number); };
+      while (std::filesystem::exists(name())) ++number;
+      state.message = "saved " + save(name());
+      fmt::print("{}\n", state.message);
+      std::fflush(stdout);
+      break;
+    }
+    case GLFW_KEY_R: {
+      state.message = gpu::recompile_shaders(session.chapter.number);
+      if (!state.message.empty()) break;  // the old pipeline stays
+      swapchain.wait_for_all_frames();
+      program->rebuild();
+      state.message = "shaders reloaded";
+      break;
+    }
+    default: break;
+  }
+}
+
+bool Loop::draw(uint32_t index) {
+  uint32_t image = 0;
+  FrameSlot* slot = swapchain.begin_frame(image);
+  if (slot == nullptr) return false;
+  state.times = slot->timer.read();  // of this slot's earlier frame, finished now
+  const VkExtent2D size = swapchain.size();
+  const CameraRays camera = camera_rays(pose, session.scene, state.time_s, {size.width, size.height}, session.options.seed, index);
+  state.changed.clear();
+  panel.layout(session.chapter, session.scene, session.settings, session.device, pose, state);
+  if (!state.changed.empty()) {
+    apply_scene_knobs(session.settings, session.scene);
+    const auto rebuilds = [&](const std::string& name) { return session.settings.knob(name).rebuilds; };
+    if (std::any_of(state.changed.begin(), state.changed.end(), rebuilds)) {
+      swapchain.wait_for_all_frames();
+      program->rebuild();
+    }
+  }
+  gpu::begin_commands(slot->commands);
+  record_frame(session.context, session.chapter, *program, display, targets, {slot->commands, targets.picture, camera, slot->timer, index, session.options.seed});
+  present.record(slot->commands, targets.displayed, swapchain.image(image), swapchain.view(image), size);
+  panel.record(slot->commands, image);
+  gpu::end_commands(slot->commands);
+  return swapchain.end_frame(*slot, image);
+}
+
+}  // namespace
+
+WindowLibrary::WindowLibrary() {
+  if (glfwInit() != GLFW_TRUE) fail("cannot open the display: {}; unset DISPLAY or use --headless to draw into a file", last_glfw_error());
+  watch_display();
+  if (glfwVulkanSupported() != GLFW_TRUE) fail("the window library finds no Vulkan loader for windows ({}); use --headless", last_glfw_error());
+}
+
+WindowLibrary::~WindowLibrary() { glfwTerminate(); }
+
+std::vector<const char*> WindowLibrary::vulkan_extensions() const {
+  uint32_t count = 0;
+  const char** names = glfwGetRequiredInstanceExtensions(&count);
+  if (names == nullptr) fail("this display offers no Vulkan surface ({}); use --headless", last_glfw_error());
+  return {names, names + count};
+}
+
+Exit run_window(Session& session) {
+  const VkExtent2D wanted = session.options.size_given || !session.device.candidate().software ? session.options.size : kSoftwareSize;
+  Window window;
+  open_window(window, fmt::format("Welkin {:02}: {}", session.chapter.number, session.chapter.title), wanted);
+  Surface surface{session.instance};
+  gpu::check(glfwCreateWindowSurface(session.instance, window.handle, nullptr, &surface.handle), "glfwCreateWindowSurface");
+  Loop loop(session, window, surface.handle);
+  fmt::print("window on {} ({}); F flies, H hides the panel, P saves a picture, Esc quits\n", session.device.candidate().name, session.device.candidate().driver);
+  std::fflush(stdout);
+
+  // [loop]
+  double last = glfwGetTime();
+  for (uint32_t index = 0; glfwWindowShouldClose(window.handle) == GLFW_FALSE;) {
+    glfwPollEvents();
+    const VkExtent2D framebuffer = framebuffer_size(window.handle);
+    if (framebuffer.width == 0 || framebuffer.height == 0) {  // minimised: nothing to draw into
+      glfwWaitEventsTimeout(0.1);
+      continue;
+    }
+    if (window.resized) loop.resize();
+    for (const int key : std::exchange(window.keys, {})) loop.on_key(key);
+    for (const std::string& file : std::exchange(window.dropped, {})) {
+      try {
+        loop.restore(file);
+      } catch (const Error& error) {
+        loop.state.message = error.what();
+      }
+    }
+    const double now = glfwGetTime();
+    move_camera(window, loop.panel, loop.state, loop.pose, now - last, session.scene.planet.ground_radius_km);
+    last = now;
+    if (!loop.draw(index)) {
+      window.resized = true;
+      continue;
+    }
+    if (++index == session.options.frames) break;
+  }
+  // [/loop]
+  if (!session.options.output.empty()) fmt::print("wrote {}\n", loop.save(session.options.output));
+  return Exit::ok;
+}
+
+}  // namespace welkin::app

@@ -1,0 +1,57 @@
+// Compute pipelines and the descriptor sets bound to them.
+#pragma once
+
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "common/gpu/resources.hpp"
+
+namespace welkin::gpu {
+
+struct Binding {
+  uint32_t slot = 0;
+  VkDescriptorType type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+  VkShaderStageFlags stages = VK_SHADER_STAGE_COMPUTE_BIT;
+};
+
+// Specialization constants: value i goes to constant_id i (a bool is 0 or 1, a float its bits).
+using Specialization = std::vector<uint32_t>;
+
+struct ComputePipeline {
+  SetLayout set_layout;
+  PipelineLayout layout;
+  PipelineHandle handle;
+  std::vector<Binding> bindings;
+};
+
+// `shader` as in load_spirv. push_constant_bytes <= 128, the portable limit.
+ComputePipeline create_compute_pipeline(const Device& device, const std::string& shader, std::vector<Binding> bindings,
+                                        uint32_t push_constant_bytes, const Specialization& specialization = {});
+
+SetLayout create_set_layout(const Device& device, const std::vector<Binding>& bindings);
+PipelineLayout create_pipeline_layout(const Device& device, VkDescriptorSetLayout set_layout, VkShaderStageFlags stages,
+                                      uint32_t push_constant_bytes);
+ShaderModule create_shader_module(const Device& device, const std::string& shader);
+
+// One descriptor set with a pool of its own: allocated once, written once, never in a frame.
+struct DescriptorSet {
+  DescriptorPool pool;
+  VkDescriptorSet handle = VK_NULL_HANDLE;
+};
+DescriptorSet create_descriptor_set(const Device& device, VkDescriptorSetLayout layout, const std::vector<Binding>& bindings);
+void write_storage_image(const Device& device, const DescriptorSet& set, uint32_t slot, const Image& image);
+void write_buffer(const Device& device, const DescriptorSet& set, uint32_t slot, VkDescriptorType type, const Buffer& buffer);
+
+// Binds pipeline, set and push constants, then starts enough workgroups of local size 8x8 to cover `size`.
+template <typename Push>
+void dispatch_over(VkCommandBuffer commands, const ComputePipeline& pipeline, const DescriptorSet& set, const Push& push,
+                   VkExtent2D size) {
+  static_assert(sizeof(Push) <= 128, "push constants: 128 bytes is what every device has");
+  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.handle);
+  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.layout, 0, 1, &set.handle, 0, nullptr);
+  vkCmdPushConstants(commands, pipeline.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(Push), &push);
+  vkCmdDispatch(commands, (size.width + 7) / 8, (size.height + 7) / 8, 1);
+}
+
+}  // namespace welkin::gpu

@@ -1,0 +1,106 @@
+// Image and buffer creation. See resources.hpp.
+#include "common/gpu/resources.hpp"
+
+#include <algorithm>
+
+namespace welkin::gpu {
+namespace {
+
+Memory allocate(const Device& device, const VkMemoryRequirements& needs, VkMemoryPropertyFlags properties,
+                const std::string& name) {
+  const VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                  .allocationSize = needs.size,
+                                  .memoryTypeIndex = device.memory_type(needs.memoryTypeBits, properties)};
+  VkDeviceMemory memory = VK_NULL_HANDLE;
+  const VkResult result = vkAllocateMemory(device, &info, nullptr, &memory);
+  if (result != VK_SUCCESS)
+    fail("{} of {:.1f} MiB does not fit: {} ({} in use)", name, static_cast<double>(needs.size) / 1048576.0,
+         result_name(result), device.allocated_bytes());
+  return Memory(device, memory);
+}
+
+}  // namespace
+
+AccountEntry::AccountEntry(const Device& device, const std::string& name, uint64_t bytes) : device_(&device), name_(name) {
+  device.allocations().push_back({name, bytes});
+  ++device.allocation_count();
+}
+
+AccountEntry::~AccountEntry() {
+  if (device_ == nullptr) return;
+  std::vector<Allocation>& all = device_->allocations();
+  const auto mine = std::find_if(all.begin(), all.end(), [&](const Allocation& a) { return a.name == name_; });
+  if (mine != all.end()) all.erase(mine);
+}
+
+// [image]
+Image create_image(const Device& device, const std::string& name, VkExtent2D size, VkFormat format, VkImageUsageFlags usage) {
+  const uint32_t limit = device.limits().maxImageDimension2D;
+  if (size.width == 0 || size.height == 0 || size.width > limit || size.height > limit)
+    fail("{}: {}x{} pixels; each side must be 1 to {} on {}", name, size.width, size.height, limit, device.candidate().name);
+  Image image{.size = size, .format = format};
+
+  const VkImageCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+                               .imageType = VK_IMAGE_TYPE_2D,
+                               .format = format,
+                               .extent = {size.width, size.height, 1},
+                               .mipLevels = 1,
+                               .arrayLayers = 1,
+                               .samples = VK_SAMPLE_COUNT_1_BIT,
+                               .tiling = VK_IMAGE_TILING_OPTIMAL,
+                               .usage = usage,
+                               .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED};
+  VkImage handle = VK_NULL_HANDLE;
+  check(vkCreateImage(device, &info, nullptr, &handle), "vkCreateImage");
+  image.handle = ImageHandle(device, handle);
+
+  VkMemoryRequirements needs;
+  vkGetImageMemoryRequirements(device, handle, &needs);
+  image.memory = allocate(device, needs, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, name);
+  check(vkBindImageMemory(device, handle, image.memory, 0), "vkBindImageMemory");
+
+  const VkImageViewCreateInfo view_info{.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+                                        .image = handle,
+                                        .viewType = VK_IMAGE_VIEW_TYPE_2D,
+                                        .format = format,
+                                        .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
+  VkImageView view = VK_NULL_HANDLE;
+  check(vkCreateImageView(device, &view_info, nullptr, &view), "vkCreateImageView");
+  image.view = ImageView(device, view);
+  image.account = AccountEntry(device, name, needs.size);
+  device.set_name(VK_OBJECT_TYPE_IMAGE, reinterpret_cast<uint64_t>(handle), name);
+  return image;
+}
+// [/image]
+
+Buffer create_buffer(const Device& device, const std::string& name, VkDeviceSize bytes, VkBufferUsageFlags usage, Where where) {
+  Buffer buffer{.bytes = bytes};
+  const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
+                                .size = std::max<VkDeviceSize>(bytes, 4),
+                                .usage = usage,
+                                .sharingMode = VK_SHARING_MODE_EXCLUSIVE};
+  VkBuffer handle = VK_NULL_HANDLE;
+  check(vkCreateBuffer(device, &info, nullptr, &handle), "vkCreateBuffer");
+  buffer.handle = BufferHandle(device, handle);
+
+  VkMemoryRequirements needs;
+  vkGetBufferMemoryRequirements(device, handle, &needs);
+  VkMemoryPropertyFlags properties = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
+  if (where != Where::device) properties = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+  if (where == Where::readback) {
+    // Reading write-combined memory is very slow: take cached memory where the device has it.
+    VkPhysicalDeviceMemoryProperties memory;
+    vkGetPhysicalDeviceMemoryProperties(device.physical(), &memory);
+    const VkMemoryPropertyFlags cached = properties | VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
+    for (uint32_t i = 0; i < memory.memoryTypeCount; ++i)
+      if ((needs.memoryTypeBits & (1u << i)) != 0 && (memory.memoryTypes[i].propertyFlags & cached) == cached) properties = cached;
+  }
+  buffer.memory = allocate(device, needs, properties, name);
+  check(vkBindBufferMemory(device, handle, buffer.memory, 0), "vkBindBufferMemory");
+  if (where != Where::device) check(vkMapMemory(device, buffer.memory, 0, VK_WHOLE_SIZE, 0, &buffer.mapped), "vkMapMemory");
+  buffer.account = AccountEntry(device, name, needs.size);
+  device.set_name(VK_OBJECT_TYPE_BUFFER, reinterpret_cast<uint64_t>(handle), name);
+  return buffer;
+}
+
+}  // namespace welkin::gpu

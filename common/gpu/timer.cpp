@@ -1,0 +1,52 @@
+// Timestamp queries. See timer.hpp.
+#include "common/gpu/timer.hpp"
+
+#include <array>
+
+namespace welkin::gpu {
+
+Timer::Timer(const Device& device) : device_(&device) {
+  const VkQueryPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+                                   .queryType = VK_QUERY_TYPE_TIMESTAMP,
+                                   .queryCount = 2 * kMaximumPasses};
+  VkQueryPool pool = VK_NULL_HANDLE;
+  check(vkCreateQueryPool(device, &info, nullptr, &pool), "vkCreateQueryPool");
+  queries_ = QueryPool(device, pool);
+  names_.reserve(kMaximumPasses);
+  times_.reserve(kMaximumPasses);
+}
+
+void Timer::begin_frame(VkCommandBuffer commands) {
+  names_.clear();
+  vkCmdResetQueryPool(commands, queries_, 0, 2 * kMaximumPasses);
+}
+
+// [timestamps]
+void Timer::begin_pass(VkCommandBuffer commands, const std::string& name) {
+  if (names_.size() == kMaximumPasses) fail("timer: more than {} passes in a frame", kMaximumPasses);
+  // ALL_COMMANDS: the clock is read when everything before has finished, so passes do not overlap in the table.
+  vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries_, 2 * static_cast<uint32_t>(names_.size()));
+  names_.push_back(name);
+}
+
+void Timer::end_pass(VkCommandBuffer commands) {
+  vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries_, 2 * static_cast<uint32_t>(names_.size()) - 1);
+}
+// [/timestamps]
+
+const std::vector<PassTime>& Timer::read() {
+  times_.clear();
+  if (device_->timestamp_bits() == 0 || names_.empty()) return times_;
+  std::array<uint64_t, 2 * kMaximumPasses> ticks{};
+  const uint32_t count = 2 * static_cast<uint32_t>(names_.size());
+  check(vkGetQueryPoolResults(*device_, queries_, 0, count, sizeof ticks, ticks.data(), sizeof(uint64_t),
+                              VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+        "vkGetQueryPoolResults");
+  const uint64_t mask = device_->timestamp_bits() >= 64 ? ~uint64_t{0} : (uint64_t{1} << device_->timestamp_bits()) - 1;
+  for (size_t i = 0; i < names_.size(); ++i)
+    times_.push_back({names_[i], static_cast<double>((ticks[2 * i + 1] - ticks[2 * i]) & mask) *
+                                     static_cast<double>(device_->limits().timestampPeriod) * 1e-6});
+  return times_;
+}
+
+}  // namespace welkin::gpu

@@ -1,0 +1,132 @@
+// Strict CSV reading and writing. See csv.hpp.
+#include "common/image/csv.hpp"
+
+#include <algorithm>
+
+#include "common/error.hpp"
+#include "common/image/atomic_file.hpp"
+#include "common/knobs.hpp"
+
+namespace welkin {
+namespace {
+
+constexpr size_t kMaxFile = size_t{256} << 20;
+constexpr size_t kMaxRows = 1'000'000;
+constexpr size_t kMaxColumns = 256;
+
+struct Field {
+  std::string_view text;
+  size_t column;  // of its first character, from 1
+};
+
+std::vector<Field> split(std::string_view line) {
+  std::vector<Field> fields;
+  for (size_t start = 0; start <= line.size();) {
+    const size_t comma = std::min(line.find(',', start), line.size());
+    size_t first = start, last = comma;
+    while (first < last && (line[first] == ' ' || line[first] == '\t')) ++first;
+    while (last > first && (line[last - 1] == ' ' || line[last - 1] == '\t')) --last;
+    fields.push_back({line.substr(first, last - first), (first < last ? first : start) + 1});
+    start = comma + 1;
+  }
+  return fields;
+}
+
+// A field as it may stand in a message: short and printable.
+std::string shown(std::string_view text) {
+  std::string out(text.substr(0, 100));
+  for (char& c : out)
+    if (static_cast<unsigned char>(c) < ' ' || c == 127) c = '?';
+  return text.size() > 100 ? out + "..." : out;
+}
+
+}  // namespace
+
+size_t CsvTable::index(std::string_view name) const {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) fail("no column '{}': there are {}", name, fmt::join(names, ", "));
+  return static_cast<size_t>(found - names.begin());
+}
+
+const std::vector<double>& CsvTable::column(std::string_view name) const {
+  const size_t i = index(name);
+  if (numbers[i].size() != rows) fail("column '{}' holds text, not numbers", name);
+  return numbers[i];
+}
+
+const std::vector<std::string>& CsvTable::text(std::string_view name) const { return fields[index(name)]; }
+
+CsvTable parse_csv(std::string_view contents, const std::string& file, const std::vector<std::string>& required,
+                   const std::vector<std::string>& text) {
+  CsvTable table;
+  const auto has = [](const auto& list, std::string_view name) {
+    return std::find(list.begin(), list.end(), name) != list.end();
+  };
+  size_t number = 0;
+  const auto refuse = [&](size_t column, const std::string& why) { fail("{}:{}:{}: {}", file, number, column, why); };
+  while (!contents.empty()) {
+    ++number;
+    std::string_view line = contents.substr(0, contents.find('\n'));
+    contents.remove_prefix(std::min(line.size() + 1, contents.size()));
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    if (line.find_first_not_of(" \t") == line.npos || line.front() == '#') continue;
+    if (const size_t quote = line.find('"'); quote != line.npos) refuse(quote + 1, "quotes are not accepted");
+    const std::vector<Field> fields = split(line);
+    if (table.names.empty()) {
+      if (fields.size() > kMaxColumns)
+        refuse(1, fmt::format("{} columns; accepted are up to {}", fields.size(), kMaxColumns));
+      for (const Field& field : fields) {
+        if (field.text.empty()) refuse(field.column, "a column without a name");
+        if (has(table.names, field.text)) refuse(field.column, fmt::format("column '{}' occurs twice", shown(field.text)));
+        table.names.emplace_back(field.text);
+      }
+      const std::string all = shown(fmt::format("{}", fmt::join(table.names, ", ")));
+      for (const std::string& name : required)
+        if (!has(table.names, name)) refuse(1, fmt::format("column '{}' is missing: there are {}", name, all));
+      table.numbers.resize(fields.size());
+      table.fields.resize(fields.size());
+      continue;
+    }
+    if (fields.size() != table.names.size())
+      refuse(fields.back().column, fmt::format("{} fields where the header has {}", fields.size(), table.names.size()));
+    if (++table.rows > kMaxRows) refuse(1, fmt::format("more than the {} rows accepted", kMaxRows));
+    for (size_t i = 0; i < fields.size(); ++i) {
+      table.fields[i].emplace_back(fields[i].text);
+      double value = 0.0;
+      if (has(text, table.names[i])) continue;
+      if (!parse_number(fields[i].text, value))
+        refuse(fields[i].column, fmt::format("{} '{}' is not a finite number", table.names[i], shown(fields[i].text)));
+      table.numbers[i].push_back(value);
+    }
+  }
+  if (table.rows == 0) fail("{}: empty: expected a line of column names and at least one row below it", file);
+  return table;
+}
+
+CsvTable read_csv(const std::filesystem::path& file, const std::vector<std::string>& required,
+                  const std::vector<std::string>& text) {
+  return parse_csv(read_file(file, kMaxFile), file.string(), required, text);
+}
+
+void write_csv(const std::filesystem::path& file, const std::vector<std::string>& comments,
+               const std::vector<std::string>& names, const std::vector<std::vector<std::string>>& rows) {
+  std::string out;
+  for (const std::string& comment : comments) {
+    out += "# ";
+    for (const char c : comment) out += c == '\n' || c == '\r' ? ' ' : c;  // one comment, one line
+    out += '\n';
+  }
+  const auto line = [&](const std::vector<std::string>& fields) {
+    if (fields.size() != names.size()) fail("{}: a row of {} fields under {} columns", file.string(), fields.size(), names.size());
+    for (const std::string& field : fields)
+      if (field.find_first_of(",\"\r\n") != std::string::npos) fail("{}: the field '{}' cannot stand in a CSV", file.string(), shown(field));
+    out += fmt::format("{}\n", fmt::join(fields, ","));
+  };
+  line(names);
+  for (const auto& row : rows) line(row);
+  write_file_atomically(file, out);
+}
+
+std::string csv_number(double value) { return fmt::format("{}", value); }
+
+}  // namespace welkin

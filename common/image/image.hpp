@@ -1,0 +1,31 @@
+// Pictures in memory. Row 0 is on top; pixels run left to right, then down: index = y * width + x.
+#pragma once
+
+#include <glm/vec4.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace welkin {
+
+constexpr uint32_t kMaxImageSide = 16384;  // accepted by every reader and writer here, each side
+
+// Linear radiance, RGBA, unbounded above. Alpha is carried along and takes part in no measurement.
+struct Image {
+  uint32_t width = 0, height = 0;
+  std::vector<glm::vec4> pixels;  // width * height
+};
+
+// Display values 0..255, sRGB-encoded, RGBA.
+struct Image8 {
+  uint32_t width = 0, height = 0;
+  std::vector<uint8_t> rgba;  // width * height * 4
+};
+
+// Sixteen bits a channel, RGB, native byte order.
+struct Image16 {
+  uint32_t width = 0, height = 0;
+  std::vector<uint16_t> rgb;  // width * height * 3
+};
+
+}  // namespace welkin

@@ -1,0 +1,43 @@
+// welkin_compare A.exr B.exr A.json B.json [--truth T.exr] --title TEXT --out PREFIX
+// Writes PREFIX.png, PREFIX.md and PREFIX.html and prints where. `./welkin compare` makes the inputs and calls this.
+#include <CLI/CLI.hpp>
+
+#include "common/error.hpp"
+#include "common/image/exr.hpp"
+#include "common/measure/compare.hpp"
+
+int main(int argc, char** argv) {
+  using namespace welkin;
+  CLI::App app("Compares two chapters' pictures of the same view.", "welkin_compare");
+  std::string a, b, a_json, b_json, truth_file, title = "Comparison", out;
+  app.add_option("a.exr", a, "first picture, linear radiance")->required();
+  app.add_option("b.exr", b, "second picture, the same size")->required();
+  app.add_option("a.json", a_json, "benchmark of the first")->required();
+  app.add_option("b.json", b_json, "benchmark of the second")->required();
+  app.add_option("--truth", truth_file, "reference picture");
+  app.add_option("--title", title, "title of the report");
+  app.add_option("--out", out, "written are PREFIX.png, PREFIX.md, PREFIX.html")->required();
+  try {
+    app.parse(argc, argv);
+    const auto side = [](const std::string& exr, const std::string& json) {
+      measure::BenchResult bench = measure::read_bench(json);
+      return measure::Side{bench.chapter, image::read_exr(exr), bench};
+    };
+    std::optional<Image> truth;
+    if (!truth_file.empty()) truth = image::read_exr(truth_file);
+    measure::write_comparison(out, title, side(a, a_json), side(b, b_json), truth);
+    fmt::print("{0}.png\n{0}.md\n{0}.html\n", out);
+    return static_cast<int>(Exit::ok);
+  } catch (const CLI::CallForHelp& help) {
+    return app.exit(help);
+  } catch (const CLI::ParseError& error) {
+    fmt::print(stderr, "welkin_compare: {}\n", error.what());
+    return static_cast<int>(Exit::usage);
+  } catch (const Error& error) {
+    fmt::print(stderr, "welkin_compare: {}\n", error.what());
+    return static_cast<int>(error.exit_code);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "welkin_compare: {}\n", error.what());
+    return static_cast<int>(Exit::usage);
+  }
+}

@@ -1,0 +1,61 @@
+// Ladders multiplied out, and the table of a sweep. See sweep.hpp.
+#include "common/measure/sweep.hpp"
+
+#include "common/error.hpp"
+#include "common/image/csv.hpp"
+
+namespace welkin::measure {
+
+std::vector<std::vector<double>> ladder_settings(const Settings& settings) {
+  std::vector<std::vector<double>> combinations(1);
+  for (const Knob& knob : settings.knobs()) {
+    const bool climbs = !knob.ladder.empty() && !settings.was_set(knob.name);
+    const std::vector<double> rungs = climbs ? knob.ladder : std::vector<double>{settings.number(knob.name)};
+    if (combinations.size() * rungs.size() > 100'000) fail("the ladders of this chapter's knobs make more than 100000 combinations: fix some with --set");
+    std::vector<std::vector<double>> longer;
+    for (const auto& head : combinations)
+      for (const double rung : rungs) {
+        longer.push_back(head);
+        longer.back().push_back(rung);
+      }
+    combinations = std::move(longer);
+  }
+  return combinations;
+}
+
+Settings with_values(Settings settings, const std::vector<double>& values) {
+  const std::vector<Knob> knobs = settings.knobs();
+  if (values.size() != knobs.size()) fail("{} values for {} knobs", values.size(), knobs.size());
+  for (size_t i = 0; i < knobs.size(); ++i) settings.set_number(knobs[i].name, values[i]);
+  return settings;
+}
+
+void write_sweep_csv(const std::filesystem::path& file, const std::vector<Knob>& knobs, const std::vector<SweepRow>& rows,
+                     const SweepHeader& header) {
+  std::vector<std::string> names = {"view"};
+  for (const Knob& knob : knobs) names.push_back("knob:" + knob.name);
+  names.insert(names.end(), {"gpu_ms_median", "gpu_ms_min", "gpu_ms_max", "wall_ms"});
+  if (!rows.empty())
+    for (const auto& pass : rows.front().passes) names.push_back("pass_ms:" + pass.first);
+  names.insert(names.end(), {"bytes", "relative_rmse", "max_relative", "p99_relative", "mean_bias", "rmse_255", "not_finite"});
+
+  std::vector<std::vector<std::string>> lines;
+  for (const auto& [values, view, gpu, wall, passes, bytes, e] : rows) {
+    std::vector<std::string> line = {view};
+    const auto add = [&](double number) { line.push_back(csv_number(number)); };
+    line.insert(line.end(), values.begin(), values.end());
+    for (const double ms : {gpu.median, gpu.minimum, gpu.maximum, wall.median}) add(ms);
+    for (const auto& pass : passes) add(pass.second);
+    line.push_back(fmt::format("{}", bytes));
+    for (const double score : {e.relative_rmse, e.max_relative, e.p99_relative, e.mean_bias, e.rmse_255}) add(score);
+    line.push_back(fmt::format("{}", e.not_finite + e.not_finite_reference));
+    lines.push_back(std::move(line));
+  }
+  const std::vector<std::string> comments = {
+      "chapter: " + header.chapter, "scene: " + header.scene, "device: " + header.device, "driver: " + header.driver,
+      std::string("software driver: ") + (header.software ? "yes" : "no"), fmt::format("resolution: {}x{}", header.width, header.height),
+      "reference: " + header.reference, "date: " + header.date};
+  write_csv(file, comments, names, lines);
+}
+
+}  // namespace welkin::measure

@@ -1,0 +1,15 @@
+// The parts of a scene that can be set from the command line or the panel, as knobs.
+#pragma once
+
+#include "common/knobs.hpp"
+#include "common/scene/scene.hpp"
+
+namespace welkin {
+
+// Knobs for what the scene contains (no mie.* without a Mie medium), each with the scene's value as default.
+std::vector<Knob> scene_knobs(const Scene& scene);
+
+// Writes the knobs that were set explicitly back into the scene.
+void apply_scene_knobs(const Settings& settings, Scene& scene);
+
+}  // namespace welkin

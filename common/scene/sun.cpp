@@ -1,0 +1,168 @@
+// The sun's zenith and azimuth from date, time and place: see sun.hpp.
+//
+// Geometry (ERFA, the free edition of the IAU's SOFA):
+//   UTC -> TAI -> TT                         eraDtf2d, eraUtctai, eraTaitt
+//   sun seen from the geocentre = -Earth     eraEpv00 (heliocentric Earth, barycentric velocity; 1900-2100)
+//   annual aberration                        eraAb
+//   celestial -> true equator of date        eraPnm06a (precession IAU 2006, nutation IAU 2000A)
+//   Greenwich apparent sidereal time         eraGst06a
+//   observer on the WGS84 ellipsoid          eraGd2gc; subtracted, which is the parallax (8.8 arc seconds)
+//
+// What is left out, largest first: UT1-UTC is taken as 0 (at most 0.9 s of time since 1972, 0.004 deg of
+// azimuth at the equator; for dates beyond the announced leap seconds it is unknown). Before 1960 UTC is read
+// as UT1 and TT-UT1 is wrong by at most 30 s (1.3 arc seconds of the sun's motion). Polar motion, diurnal
+// aberration and the sun's own motion during the light time are below 0.4 arc seconds each. Refraction is
+// left out on purpose.
+#include "common/scene/sun.hpp"
+
+#include <erfa.h>
+#include <erfam.h>
+
+#include <chrono>
+#include <cmath>
+#include <string_view>
+
+#include "common/error.hpp"
+#include "common/scene/one_line.hpp"
+
+namespace welkin {
+namespace {
+
+struct DateTime {
+  int year = 0, month = 0, day = 0, hour = 0, minute = 0;
+  double second = 0.0;
+};
+
+constexpr const char* kAccepted =
+    "accepted is YYYY-MM-DDThh:mm[:ss] in UTC from 1900 to 2100, now, or today hh:mm[:ss]";
+
+// Takes exactly `digits` decimal digits off the front of `text`.
+bool take_digits(std::string_view& text, size_t digits, int& value) {
+  if (text.size() < digits) return false;
+  value = 0;
+  for (size_t i = 0; i < digits; ++i) {
+    if (text[i] < '0' || text[i] > '9') return false;
+    value = value * 10 + (text[i] - '0');
+  }
+  text.remove_prefix(digits);
+  return true;
+}
+
+bool take(std::string_view& text, std::string_view expected) {
+  if (!text.starts_with(expected)) return false;
+  text.remove_prefix(expected.size());
+  return true;
+}
+
+// hh:mm[:ss[.fff]][Z] and nothing after it.
+bool take_time(std::string_view text, DateTime& time) {
+  if (!take_digits(text, 2, time.hour) || !take(text, ":") || !take_digits(text, 2, time.minute))
+    return false;
+  if (take(text, ":")) {
+    int whole = 0;
+    if (!take_digits(text, 2, whole)) return false;
+    time.second = whole;
+    if (take(text, ".")) {
+      double place = 0.1;
+      int digit = 0;
+      if (text.empty() || text.size() > 10) return false;
+      for (; take_digits(text, 1, digit); place *= 0.1) time.second += place * digit;
+    }
+  }
+  take(text, "Z");
+  return text.empty() && time.hour <= 23 && time.minute <= 59 && time.second < 60.0;
+}
+
+DateTime present() {
+  using namespace std::chrono;
+  const auto now = floor<milliseconds>(system_clock::now());
+  const auto midnight = floor<days>(now);
+  const year_month_day date(midnight);
+  const hh_mm_ss clock(now - midnight);
+  return {
+      static_cast<int>(date.year()),
+      static_cast<int>(static_cast<unsigned>(date.month())),
+      static_cast<int>(static_cast<unsigned>(date.day())),
+      static_cast<int>(clock.hours().count()),
+      static_cast<int>(clock.minutes().count()),
+      static_cast<double>(clock.seconds().count()) + 1e-3 * static_cast<double>(clock.subseconds().count())};
+}
+
+DateTime read_utc(const std::string& utc) {
+  std::string_view text = utc;
+  if (text == "now" || text == "today") return present();
+  DateTime time;
+  bool good = false;
+  if (take(text, "today ")) {
+    time = present();
+    time.second = 0.0;
+    good = take_time(text, time);
+  } else {
+    good = take_digits(text, 4, time.year) && take(text, "-") && take_digits(text, 2, time.month) &&
+           take(text, "-") && take_digits(text, 2, time.day) && take(text, "T") && take_time(text, time);
+  }
+  const std::chrono::year_month_day date{std::chrono::year(time.year),
+                                         std::chrono::month(static_cast<unsigned>(time.month)),
+                                         std::chrono::day(static_cast<unsigned>(time.day))};
+  if (!good || !date.ok() || time.year < 1900 || time.year > 2100)
+    fail("utc '{}': {}", one_line(utc, 60), kAccepted);
+  return time;
+}
+
+void check_angle(const char* name, double value, double limit) {
+  if (!(std::abs(value) <= limit))
+    fail("{} = {:g}: accepted is -{:g} to {:g} deg", name, value, limit, limit);
+}
+
+}  // namespace
+
+SunAngles sun_angles(const std::string& utc, double latitude_deg, double longitude_deg) {
+  check_angle("latitude_deg", latitude_deg, 90.0);
+  check_angle("longitude_deg", longitude_deg, 360.0);
+  const DateTime time = read_utc(utc);
+
+  // Negative codes are errors; positive ones warn of a year without announced leap seconds, which is
+  // accepted.
+  double utc1 = 0, utc2 = 0, tai1 = 0, tai2 = 0, tt1 = 0, tt2 = 0;
+  if (eraDtf2d("UTC", time.year, time.month, time.day, time.hour, time.minute, time.second, &utc1, &utc2) <
+          0 ||
+      eraUtctai(utc1, utc2, &tai1, &tai2) < 0 || eraTaitt(tai1, tai2, &tt1, &tt2) < 0)
+    fail("utc '{}': {}", one_line(utc, 60), kAccepted);
+
+  // From the geocentre to the sun, in au, with annual aberration. Positive eraEpv00 code: outside 1900-2100
+  // by hours.
+  double heliocentric[2][3], barycentric[2][3];
+  eraEpv00(tt1, tt2, heliocentric, barycentric);
+  double distance_au = 0, direction[3], velocity[3], apparent[3];
+  eraPn(heliocentric[0], &distance_au, direction);
+  for (double& x : direction) x = -x;
+  const double au_per_day_in_c = ERFA_AULT / ERFA_DAYSEC;
+  eraSxp(au_per_day_in_c, barycentric[1], velocity);
+  eraAb(direction, velocity, distance_au, std::sqrt(1.0 - eraPdp(velocity, velocity)), apparent);
+
+  // To the rotating Earth: x towards Greenwich, z towards the north pole.
+  double celestial_to_true[3][3], terrestrial[3];
+  eraPnm06a(tt1, tt2, celestial_to_true);
+  eraRz(eraGst06a(utc1, utc2, tt1, tt2), celestial_to_true);
+  eraRxp(celestial_to_true, apparent, terrestrial);
+
+  // To the observer: subtract where they stand, then resolve along east, north and up (the ellipsoid's
+  // normal).
+  const double latitude = latitude_deg * ERFA_DD2R, longitude = longitude_deg * ERFA_DD2R;
+  double observer_m[3], to_sun[3];
+  eraGd2gc(ERFA_WGS84, longitude, latitude, 0.0, observer_m);
+  for (int i = 0; i < 3; ++i) to_sun[i] = terrestrial[i] * distance_au - observer_m[i] / ERFA_DAU;
+  const double towards = std::cos(longitude) * to_sun[0] + std::sin(longitude) * to_sun[1];
+  const double east = -std::sin(longitude) * to_sun[0] + std::cos(longitude) * to_sun[1];
+  const double north = -std::sin(latitude) * towards + std::cos(latitude) * to_sun[2];
+  const double up = std::cos(latitude) * towards + std::sin(latitude) * to_sun[2];
+  const double horizontal = std::hypot(east, north);
+
+  SunAngles angles;
+  angles.zenith_deg = std::atan2(horizontal, up) * ERFA_DR2D;
+  // Overhead (or underfoot) there is no azimuth; 0 by convention.
+  angles.azimuth_deg = horizontal > 1e-15 ? eraAnp(std::atan2(east, north)) * ERFA_DR2D : 0.0;
+  return angles;
+}
+
+}  // namespace welkin

@@ -1,0 +1,53 @@
+// Rays around a planet, in float32. Pure functions; lengths in km.
+//
+// A ray starts at altitude h above a sphere of radius R, r = R + h, with zenith cosine mu (and sine = sqrt(1 - mu^2)).
+// Points on it are found from altitudes, never as length(p) - R, which is only known to 0.5 m in float32:
+//   r(t)^2 = r^2 + 2 r mu t + t^2        h(t) = h + t (2 r mu + t) / (r(t) + r)
+// The line's closest point to the centre (tangent point) is at distance b = r sine, altitude
+//   b - R = h - r mu^2 / (1 + sine),     and s = r mu + t is the distance measured from it.
+#ifndef WELKIN_RAY_SPHERE_GLSL
+#define WELKIN_RAY_SPHERE_GLSL
+
+// Altitude after a distance t along the ray. Domain: h >= -R, t >= 0.
+float altitude_along(float ground_radius_km, float altitude_km, float mu, float t_km) {
+  float r = ground_radius_km + altitude_km;
+  float r_t = sqrt(max(r * r + t_km * (2.0 * r * mu + t_km), 0.0));
+  return altitude_km + t_km * (2.0 * r * mu + t_km) / (r_t + r);
+}
+
+// Altitude of the tangent point of the line; negative: the line meets the sphere. Two forms: near the horizontal the
+// first keeps all digits of h; seen from far away (r mu^2 is then thousands of km) the second loses less.
+float tangent_altitude(float ground_radius_km, float altitude_km, float mu, float sine) {
+  float r = ground_radius_km + altitude_km;
+  if (abs(mu) < 0.5) return altitude_km - r * mu * mu / (1.0 + sine);
+  return r * sine - ground_radius_km;
+}
+
+// Distance along a line between its tangent point and the altitude h: sqrt((R+h)^2 - b^2) = sqrt((h - h_p)(2R + h + h_p)).
+// 0 if the line does not go that low.
+float half_chord(float ground_radius_km, float tangent_altitude_km, float altitude_km) {
+  return sqrt(max((altitude_km - tangent_altitude_km) * (2.0 * ground_radius_km + altitude_km + tangent_altitude_km), 0.0));
+}
+
+// Distance from a point at altitude h, below or on the sphere at altitude `shell`, out to that sphere.
+// (shell - h)(2R + shell + h) / (r mu + sqrt(...)) for mu >= 0: no difference of nearly equal numbers.
+float distance_to_shell_from_inside(float ground_radius_km, float altitude_km, float mu, float shell_km) {
+  float r_mu = (ground_radius_km + altitude_km) * mu;
+  float c = max((shell_km - altitude_km) * (2.0 * ground_radius_km + shell_km + altitude_km), 0.0);
+  float root = sqrt(r_mu * r_mu + c);
+  return mu >= 0.0 ? c / max(r_mu + root, 1.0e-20) : root - r_mu;
+}
+
+// Distance down to the sphere of altitude `shell` from a point at or above it, or -1 if the ray misses it.
+// Near root as c / q, never b - sqrt(b^2 - c).
+float distance_to_shell_from_outside(float ground_radius_km, float altitude_km, float mu, float sine, float shell_km) {
+  if (mu >= 0.0) return -1.0;
+  float below = shell_km - tangent_altitude(ground_radius_km, altitude_km, mu, sine);
+  if (below < 0.0) return -1.0;
+  float r_mu = (ground_radius_km + altitude_km) * mu;
+  float root = sqrt(below * (2.0 * (ground_radius_km + shell_km) - below));
+  float c = max((altitude_km - shell_km) * (2.0 * ground_radius_km + shell_km + altitude_km), 0.0);
+  return c / max(root - r_mu, 1.0e-20);
+}
+
+#endif
