@@ -21,7 +21,7 @@ std::string accepted(const Knob& knob) {
 bool parse_number(std::string_view text, double& value) {
   const char* first = text.data();
   const char* last = first + text.size();
-  if (first != last && *first == '+') ++first;
+  if (last - first > 1 && *first == '+' && first[1] != '-') ++first;
   const auto [end, error] = std::from_chars(first, last, value);
   return error == std::errc() && end == last && first != last && std::isfinite(value);
 }

@@ -1,7 +1,7 @@
 // Chapter 02, a window: the same image as chapter 01, bit for bit, on screen: surface, swapchain, frames in flight,
-// input, panel, shader reload and pictures that restore. The code is common/app/window.cpp and swapchain.cpp; the page
-// docs/chapters/02_window.md walks through it.
+// input, panel, shader reload and pictures that restore.
 #include "chapters/01_first_light/first_light.hpp"
+#include "chapters/02_window/window.hpp"
 
 using namespace welkin;
 
@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
       .try_next = "./welkin run 03   (a planet)",
       .display = app::Display::raw,
       .standard_views = {{"noon", ""}},
+      .window = open_window_system,
       .make = [](const app::Context& context) { return std::make_unique<FirstLight>(context); }};
   return app::run(argc, argv, chapter);
   // [/chapter]

@@ -65,6 +65,15 @@ struct Program {
   virtual std::vector<ProbeResult> probe(std::span<const ProbeRay> rays);
 };
 
+struct Session;
+
+// A way to show frames, made before the Vulkan instance and destroyed after it. Chapter 02 makes the one there is.
+struct WindowSystem {
+  virtual ~WindowSystem() = default;
+  virtual std::vector<const char*> vulkan_extensions() const = 0;  // what surfaces need of the instance
+  virtual Exit show(Session& session) = 0;                         // until the window is closed
+};
+
 struct Chapter {
   int number = 0;
   std::string name;       // "05_single_scattering"
@@ -77,6 +86,7 @@ struct Chapter {
   std::vector<std::pair<std::string, std::string>> reference;  // knob values the sweep's reference is drawn with
   std::string default_scene = "noon";
   std::vector<StandardView> standard_views;
+  std::function<std::unique_ptr<WindowSystem>()> window;  // none: the chapter draws into files only
   std::function<std::unique_ptr<Program>(const Context&)> make;
 };
 

@@ -3,7 +3,6 @@
 #include <cstdlib>
 
 #include "common/app/session.hpp"
-#include "common/app/window.hpp"
 #include "common/gpu/shader_file.hpp"
 #include "common/image/atomic_file.hpp"
 #include "common/image/png.hpp"
@@ -38,9 +37,9 @@ Exit run_mode(const Chapter& chapter, Options& options) {
   }
 
   // [devices]
-  const bool windowed = !options.headless && !instrument && !options.list_gpus && display_announced();
-  const std::unique_ptr<WindowLibrary> library = windowed ? std::make_unique<WindowLibrary>() : nullptr;
-  gpu::Instance instance(options.validation, windowed ? library->vulkan_extensions() : std::vector<const char*>{});
+  const bool windowed = chapter.window && !options.headless && !instrument && !options.list_gpus && display_announced();
+  const std::unique_ptr<WindowSystem> window_system = windowed ? chapter.window() : nullptr;
+  gpu::Instance instance(options.validation, windowed ? window_system->vulkan_extensions() : std::vector<const char*>{});
   const std::vector<gpu::Candidate> candidates = gpu::list_devices(instance, options.inject);
   if (options.list_gpus) {
     print_devices(candidates);
@@ -55,7 +54,7 @@ Exit run_mode(const Chapter& chapter, Options& options) {
   else if (!options.probe.empty()) result = run_probe(session);
   else if (!options.sweep.empty()) result = run_sweep(session);
   else if (!options.bench.empty()) result = run_bench(session);
-  else if (windowed) result = run_window(session);
+  else if (windowed) result = window_system->show(session);
   else result = run_picture(session);
 
   if (result == Exit::ok && !instance.validation_messages().empty()) {

@@ -37,7 +37,6 @@ void write_output(const Session& session, const std::string& file, const CameraP
 
 // Modes; each returns the program's exit code (before validation messages are looked at).
 Exit run_picture(const Session& session);  // headless
-Exit run_window(Session& session);
 Exit run_bench(const Session& session);
 Exit run_sweep(const Session& session);
 Exit run_probe(const Session& session);

@@ -31,9 +31,11 @@ void write_file_atomically(const std::filesystem::path& target, std::string_view
   if (!target.has_filename()) fail("cannot write '{}': it names no file", name);
   struct stat info {};
   if (::stat(name.c_str(), &info) == 0 && !S_ISREG(info.st_mode))
-    fail("cannot write '{}': it is {}, not a regular file", name, S_ISDIR(info.st_mode) ? "a directory" : "a device or pipe");
+    fail("cannot write '{}': it is {}, not a regular file", name,
+         S_ISDIR(info.st_mode) ? "a directory" : "a device or pipe");
   const std::string parent = target.has_parent_path() ? target.parent_path().string() : ".";
-  if (::stat(parent.c_str(), &info) != 0) fail("cannot write '{}': directory '{}': {}", name, parent, std::strerror(errno));
+  if (::stat(parent.c_str(), &info) != 0)
+    fail("cannot write '{}': directory '{}': {}", name, parent, std::strerror(errno));
   if (!S_ISDIR(info.st_mode)) fail("cannot write '{}': '{}' is not a directory", name, parent);
 
   static std::atomic<unsigned> counter{0};
@@ -44,9 +46,12 @@ void write_file_atomically(const std::filesystem::path& target, std::string_view
   int error = 0;
   for (size_t done = 0; done < contents.size() && error == 0;) {
     const ssize_t written = ::write(file.fd, contents.data() + done, contents.size() - done);
-    if (written > 0) done += static_cast<size_t>(written);
-    else if (written == 0) error = ENOSPC;
-    else if (errno != EINTR) error = errno;
+    if (written > 0)
+      done += static_cast<size_t>(written);
+    else if (written == 0)
+      error = ENOSPC;
+    else if (errno != EINTR)
+      error = errno;
   }
   if (::close(std::exchange(file.fd, -1)) != 0 && error == 0) error = errno;  // some disks report "full" only here
   if (error == 0 && ::rename(temporary.c_str(), name.c_str()) != 0) error = errno;

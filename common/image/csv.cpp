@@ -77,7 +77,8 @@ CsvTable parse_csv(std::string_view contents, const std::string& file, const std
         refuse(1, fmt::format("{} columns; accepted are up to {}", fields.size(), kMaxColumns));
       for (const Field& field : fields) {
         if (field.text.empty()) refuse(field.column, "a column without a name");
-        if (has(table.names, field.text)) refuse(field.column, fmt::format("column '{}' occurs twice", shown(field.text)));
+        if (has(table.names, field.text))
+          refuse(field.column, fmt::format("column '{}' occurs twice", shown(field.text)));
         table.names.emplace_back(field.text);
       }
       const std::string all = shown(fmt::format("{}", fmt::join(table.names, ", ")));
@@ -117,9 +118,11 @@ void write_csv(const std::filesystem::path& file, const std::vector<std::string>
     out += '\n';
   }
   const auto line = [&](const std::vector<std::string>& fields) {
-    if (fields.size() != names.size()) fail("{}: a row of {} fields under {} columns", file.string(), fields.size(), names.size());
+    if (fields.size() != names.size())
+      fail("{}: a row of {} fields under {} columns", file.string(), fields.size(), names.size());
     for (const std::string& field : fields)
-      if (field.find_first_of(",\"\r\n") != std::string::npos) fail("{}: the field '{}' cannot stand in a CSV", file.string(), shown(field));
+      if (field.find_first_of(",\"\r\n") != std::string::npos)
+        fail("{}: the field '{}' cannot stand in a CSV", file.string(), shown(field));
     out += fmt::format("{}\n", fmt::join(fields, ","));
   };
   line(names);

@@ -4,10 +4,9 @@
 // IEC 61966-2-1. Exposure is in 1 / radiance.
 #pragma once
 
-#include <glm/vec3.hpp>
-
 #include <algorithm>
 #include <cmath>
+#include <glm/vec3.hpp>
 
 #include "common/image/image.hpp"
 

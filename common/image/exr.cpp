@@ -56,7 +56,8 @@ void check_layout(std::string_view bytes, const std::string& file) {
   for (std::string_view name = plain ? in.name() : ""; !name.empty(); name = in.name()) {
     plain = !in.name().empty() && plain && name != "type" && name != "chunkCount" && name != "tiles";
     const auto size = in.number<uint32_t>();
-    in.require(attributes.emplace(name, in.take(size)).second && attributes.size() < 100, "attribute repeated, or too many");
+    in.require(attributes.emplace(name, in.take(size)).second && attributes.size() < 100,
+               "attribute repeated, or too many");
   }
   in.require(plain, "tiled, deep or in several parts; accepted is one part of scan lines, version 2");
   const auto attribute = [&](const char* name, size_t size) {
@@ -65,7 +66,8 @@ void check_layout(std::string_view bytes, const std::string& file) {
   };
   const int method = attribute("compression", 1)[0];
   in.require(method == TINYEXR_COMPRESSIONTYPE_NONE || method == TINYEXR_COMPRESSIONTYPE_ZIPS ||
-                 method == TINYEXR_COMPRESSIONTYPE_ZIP, "unknown compression; accepted is none, ZIPS or ZIP");
+                 method == TINYEXR_COMPRESSIONTYPE_ZIP,
+             "unknown compression; accepted is none, ZIPS or ZIP");
   in.require(attribute("lineOrder", 1)[0] == 0, "lines do not run top to bottom");  // tinyexr would flip the picture
 
   std::array<int32_t, 4> box;  // min x, min y, max x, max y, inclusive
@@ -85,7 +87,8 @@ void check_layout(std::string_view bytes, const std::string& file) {
                "accepted are half or float channels at full resolution");
     pixel_bytes += type == TINYEXR_PIXELTYPE_HALF ? 2 : 4;
   }
-  in.require(channels >= 3 && channels <= 8 && list.at == list.bytes.size(), "its channel list is damaged, or not of 3 to 8");
+  in.require(channels >= 3 && channels <= 8 && list.at == list.bytes.size(),
+             "its channel list is damaged, or not of 3 to 8");
 
   const int64_t lines = method == TINYEXR_COMPRESSIONTYPE_ZIP ? 16 : 1;
   for (int64_t y = 0; y < height; y += lines) {
@@ -134,7 +137,8 @@ struct Exr {  // released whatever happens
 void write_exr(const std::filesystem::path& path, const Image& picture, bool with_alpha) {
   const size_t count = size_t{picture.width} * picture.height;
   if (count == 0 || picture.width > kMaxImageSide || picture.height > kMaxImageSide || picture.pixels.size() != count)
-    fail("EXR of {}x{} with {} pixels: expected 1 to {} a side", picture.width, picture.height, picture.pixels.size(), kMaxImageSide);
+    fail("EXR of {}x{} with {} pixels: expected 1 to {} a side", picture.width, picture.height, picture.pixels.size(),
+         kMaxImageSide);
   const std::string names = with_alpha ? "ABGR" : "BGR";  // channels stand in alphabetical order
   const int channels = static_cast<int>(names.size());
   std::vector<float> planes[4];

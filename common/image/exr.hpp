@@ -1,8 +1,8 @@
 // OpenEXR pictures through tinyexr: linear radiance, float32.
 //
 // write_exr writes single-part scan lines, ZIP. read_exr accepts single-part scan-line files of 1..16384 pixels a side,
-// half or float channels R, G, B and optionally A, uncompressed or ZIP/ZIPS; it checks the whole layout (header, channel
-// list, offset table, each block's line and length) before tinyexr, which trusts its input, sees the file.
+// half or float channels R, G, B and optionally A, uncompressed or ZIP/ZIPS; it checks the whole layout (header,
+// channel list, offset table, each block's line and length) before tinyexr, which trusts its input, sees the file.
 #pragma once
 
 #include <filesystem>

@@ -1,9 +1,8 @@
 // Pictures in memory. Row 0 is on top; pixels run left to right, then down: index = y * width + x.
 #pragma once
 
-#include <glm/vec4.hpp>
-
 #include <cstdint>
+#include <glm/vec4.hpp>
 #include <vector>
 
 namespace welkin {

@@ -2,6 +2,7 @@
 #include "common/image/png.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdlib>
 #include <memory>
 #include <string_view>
@@ -26,7 +27,7 @@ namespace {
 constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
 constexpr size_t kMaxFile = size_t{1} << 30;  // stb counts in int
 constexpr size_t kMaxText = size_t{1} << 20;
-constexpr size_t kDeflateRatio = 1032;       // deflate's best: 258 bytes from 2 bits
+constexpr size_t kDeflateRatio = 1032;  // deflate's best: 258 bytes from 2 bits
 
 struct Free {
   void operator()(void* memory) const { std::free(memory); }
@@ -121,6 +122,8 @@ std::vector<Chunk> chunks(std::string_view bytes, const std::string& file) {
     if (get32(bytes, at + 8 + length) != crc32(covered))
       fail("{}: PNG is damaged: the chunk at byte {} has a wrong CRC", file, at);
     found.push_back({covered.substr(0, 4), covered.substr(4)});
+    for (const char c : found.back().type)  // stb would repeat it, whatever it is, in its message
+      if (!std::isalpha(static_cast<unsigned char>(c))) fail("{}: PNG is damaged in the chunk at byte {}", file, at);
   }
   if (found[0].type != "IHDR" || found[0].data.size() != 13) fail("{}: PNG does not begin with a header", file);
   return found;

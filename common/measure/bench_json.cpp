@@ -53,8 +53,9 @@ std::string human_bytes(uint64_t bytes) {
 }
 
 std::string bench_table(const BenchResult& r) {
-  std::string out = fmt::format("{}, scene {}, view {}, {}x{}\n{}, {}{}\n", r.chapter, r.scene, r.view, r.width, r.height, r.device,
-                                r.driver, r.software ? " (software driver: these times say nothing about a GPU)" : "");
+  std::string out =
+      fmt::format("{}, scene {}, view {}, {}x{}\n{}, {}{}\n", r.chapter, r.scene, r.view, r.width, r.height, r.device,
+                  r.driver, r.software ? " (software driver: these times say nothing about a GPU)" : "");
   size_t wide = 9;
   for (const PassTime& pass : r.passes) wide = std::max(wide, pass.name.size());
   out += fmt::format("  {:<{}} {:>10} {:>10} {:>10}\n", "pass", wide, "median ms", "min", "max");
@@ -63,23 +64,15 @@ std::string bench_table(const BenchResult& r) {
   };
   for (const PassTime& pass : r.passes) line(pass.name, pass.ms);
   line("wall time", r.wall_ms);
-  return out + fmt::format("  GPU total {:.3f} ms, {} held; {} frames timed after {} to warm up\n", gpu_ms(r), human_bytes(r.bytes),
-                           r.repeats, r.warmup);
+  return out + fmt::format("  GPU total {:.3f} ms, {} held; {} frames timed after {} to warm up\n", gpu_ms(r),
+                           human_bytes(r.bytes), r.repeats, r.warmup);
 }
 
 void write_knobs_json(const std::filesystem::path& file, const std::string& chapter, const std::vector<Knob>& knobs) {
   Json json = {{"chapter", chapter}, {"knobs", Json::array()}};
-  for (const Knob& knob : knobs) {
-    Json entry = {{"name", knob.name}, {"unit", knob.unit}, {"meaning", knob.meaning}};
-    if (knob.choices.empty()) {
-      entry.update({{"minimum", knob.minimum}, {"maximum", knob.maximum}, {"default", knob.initial}, {"ladder", knob.ladder}});
-    } else {
-      Json ladder = Json::array();
-      for (const double rung : knob.ladder) ladder.push_back(knob.choices.at(static_cast<size_t>(rung)));
-      entry.update({{"choices", knob.choices}, {"default", knob.choices.at(static_cast<size_t>(knob.initial))}, {"ladder", ladder}});
-    }
-    json["knobs"].push_back(entry);
-  }
+  for (const Knob& knob : knobs)
+    json["knobs"].push_back({{"name", knob.name}, {"unit", knob.unit}, {"meaning", knob.meaning}, {"minimum", knob.minimum},
+                             {"maximum", knob.maximum}, {"initial", knob.initial}, {"choices", knob.choices}, {"ladder", knob.ladder}});
   write_file_atomically(file, json.dump(2) + "\n");
 }
 

@@ -21,10 +21,10 @@ struct BenchResult {
   uint32_t width = 0, height = 0;
   std::map<std::string, std::string> settings;  // knob, value as text
   std::vector<PassTime> passes;
-  Spread wall_ms;                // one frame from submission to completion, seen by the CPU
-  uint64_t bytes = 0;            // device memory held
-  int warmup = 0, repeats = 0;   // frames run before the timing, and timed
-  std::string date;              // ISO 8601, UTC
+  Spread wall_ms;               // one frame from submission to completion, seen by the CPU
+  uint64_t bytes = 0;           // device memory held
+  int warmup = 0, repeats = 0;  // frames run before the timing, and timed
+  std::string date;             // ISO 8601, UTC
 };
 
 double gpu_ms(const BenchResult& result);  // sum of the passes' medians

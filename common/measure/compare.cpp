@@ -2,7 +2,6 @@
 #include "common/measure/compare.hpp"
 
 #include <glm/common.hpp>
-
 #include <string_view>
 
 #include "common/error.hpp"
@@ -33,7 +32,8 @@ std::string base64(std::string_view bytes) {
   std::string out;
   for (size_t i = 0; i < bytes.size(); i += 3) {
     uint32_t group = 0;
-    for (size_t k = 0; k < 3; ++k) group = group << 8 | (i + k < bytes.size() ? static_cast<uint8_t>(bytes[i + k]) : 0u);
+    for (size_t k = 0; k < 3; ++k)
+      group = group << 8 | (i + k < bytes.size() ? static_cast<uint8_t>(bytes[i + k]) : 0u);
     for (size_t k = 0; k < 4; ++k) out += i + k <= bytes.size() ? digits[group >> (18 - 6 * k) & 63u] : '=';
   }
   return out;
@@ -43,8 +43,10 @@ std::string base64(std::string_view bytes) {
 std::string escape(std::string_view text) {
   std::string out;
   for (const char c : text)
-    if (std::string_view("&<>\"|*`[]\\_#\r\n").find(c) == text.npos) out += c;
-    else out += fmt::format("&#{};", static_cast<int>(c));
+    if (std::string_view("&<>\"|*`[]\\\r\n").find(c) == text.npos)
+      out += c;
+    else
+      out += fmt::format("&#{};", static_cast<int>(c));
   return out;
 }
 
@@ -61,9 +63,11 @@ std::string table(const Rows& rows) {  // Markdown takes HTML's tables as they a
 }
 
 std::vector<std::string> error_row(const std::string& name, const Errors& e) {
-  if (!e.finite()) return {name, fmt::format("{} values not finite", e.not_finite + e.not_finite_reference), "", "", "", ""};
+  if (!e.finite())
+    return {name, fmt::format("{} values not finite", e.not_finite + e.not_finite_reference), "", "", "", ""};
   std::vector<std::string> row = {name};
-  for (const double v : {e.relative_rmse, e.p99_relative, e.max_relative, e.mean_bias, e.rmse_255}) row.push_back(fmt::format("{:.3g}", v));
+  for (const double v : {e.relative_rmse, e.p99_relative, e.max_relative, e.mean_bias, e.rmse_255})
+    row.push_back(fmt::format("{:.3g}", v));
   return row;
 }
 
@@ -78,13 +82,14 @@ float choose_exposure(const Image& picture) {
 }
 
 std::array<uint8_t, 3> scale_colour(float value) {
-  static constexpr uint8_t stops[9][3] = {{68, 1, 84},   {71, 44, 122}, {59, 81, 139},  {44, 113, 142}, {33, 144, 141},
+  static constexpr uint8_t stops[9][3] = {{68, 1, 84},    {71, 44, 122}, {59, 81, 139},  {44, 113, 142}, {33, 144, 141},
                                           {39, 173, 129}, {92, 200, 99}, {170, 220, 50}, {253, 231, 37}};  // viridis
   const float at = std::clamp(value, 0.0f, 1.0f) * 8.0f;
   const int below = std::min(static_cast<int>(at), 7);
   std::array<uint8_t, 3> out;
   for (size_t c = 0; c < 3; ++c)
-    out[c] = image::quantise((stops[below][c] + (at - static_cast<float>(below)) * (stops[below + 1][c] - stops[below][c])) / 255.0f);
+    out[c] = image::quantise(
+        (stops[below][c] + (at - static_cast<float>(below)) * (stops[below + 1][c] - stops[below][c])) / 255.0f);
   return out;
 }
 
@@ -143,17 +148,23 @@ void write_comparison(const std::filesystem::path& prefix, const std::string& ti
   const std::string legend = fmt::format(
       "Left {}, middle {}, right the largest channel difference of their display values times {:g} (dark violet: none; "
       "yellow: {:.3g} of full range, or more; magenta: not finite). Display: sRGB of 1 - exp(-{:.4g} L), the exposure "
-      "chosen from {}.", a.name, b.name, gain, 1.0f / gain, exposure, truth ? "the truth" : a.name);
+      "chosen from {}.",
+      a.name, b.name, gain, 1.0f / gain, exposure, truth ? "the truth" : a.name);
 
   const std::string base = prefix.string(), heading = escape(title);
   const std::string png = image::encode_png8(side_by_side(a.picture, b.picture, exposure, gain), {{"Title", title}});
-  const std::string text = fmt::format("<p>{}</p>\n{}<p>{}</p>\n{}", escape(legend), table(errors), escape(devices), table(cost));
-  const std::string markdown = fmt::format("# {}\n\n![{}]({}.png)\n\n{}", heading, heading, prefix.filename().string(), text);
+  const std::string text =
+      fmt::format("<p>{}</p>\n{}<p>{}</p>\n{}", escape(legend), table(errors), escape(devices), table(cost));
+  const std::string markdown =
+      fmt::format("# {}\n\n![{}]({}.png)\n\n{}", heading, heading, prefix.filename().string(), text);
   const std::string html = fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}</title>\n<style>body{{font:16px sans-serif;"
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}</title>\n<style>body{{font:16px "
+      "sans-serif;"
       "color:#111;background:#fff;max-width:80em;margin:1em auto}}img{{width:100%}}table{{border-collapse:collapse}}"
-      "td{{border:1px solid #999;padding:.2em .6em}}tr:first-child{{font-weight:bold}}</style></head>\n<body><h1>{0}</h1>\n"
-      "<img alt=\"{0}\" src=\"data:image/png;base64,{1}\">\n{2}</body></html>\n", heading, base64(png), text);
+      "td{{border:1px solid #999;padding:.2em "
+      ".6em}}tr:first-child{{font-weight:bold}}</style></head>\n<body><h1>{0}</h1>\n"
+      "<img alt=\"{0}\" src=\"data:image/png;base64,{1}\">\n{2}</body></html>\n",
+      heading, base64(png), text);
   for (const auto& [ending, contents] : {std::pair{".png", png}, {".md", markdown}, {".html", html}})
     write_file_atomically(base + ending, contents);
 }

@@ -1,4 +1,5 @@
-// Two pictures of the same view side by side, with their difference, errors, times and bytes, as PNG, Markdown and HTML.
+// Two pictures of the same view side by side, with their difference, errors, times and bytes, as PNG, Markdown and
+// HTML.
 #pragma once
 
 #include <array>

@@ -9,7 +9,7 @@
 
 namespace welkin::measure {
 
-// {"chapter": …, "knobs": [{"name", "unit", "meaning", "minimum", "maximum", "default", "choices", "ladder"}]}
+// {"chapter": …, "knobs": [the members of Knob]}; values of a choice are indices into its names.
 void write_knobs_json(const std::filesystem::path& file, const std::string& chapter, const std::vector<Knob>& knobs);
 
 }  // namespace welkin::measure

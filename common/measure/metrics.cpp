@@ -27,7 +27,8 @@ std::vector<double> values(const Image& image) {
 
 Errors compare(std::span<const double> ours, std::span<const double> reference) {
   if (ours.size() != reference.size())
-    throw Error(Exit::mismatch, fmt::format("{} values cannot be compared with a reference of {}", ours.size(), reference.size()));
+    throw Error(Exit::mismatch,
+                fmt::format("{} values cannot be compared with a reference of {}", ours.size(), reference.size()));
   if (ours.empty()) fail("nothing to compare: no values");
   Errors e;
   e.values = ours.size();
@@ -35,7 +36,8 @@ Errors compare(std::span<const double> ours, std::span<const double> reference) 
   e.not_finite = static_cast<size_t>(std::count_if(ours.begin(), ours.end(), not_finite));
   e.not_finite_reference = static_cast<size_t>(std::count_if(reference.begin(), reference.end(), not_finite));
   if (!e.finite()) {
-    e.relative_rmse = e.max_relative = e.p99_relative = e.mean_bias = e.rmse_255 = std::numeric_limits<double>::quiet_NaN();
+    e.relative_rmse = e.max_relative = e.p99_relative = e.mean_bias = e.rmse_255 =
+        std::numeric_limits<double>::quiet_NaN();
     return e;
   }
   double difference = 0.0, difference2 = 0.0, magnitude = 0.0, reference2 = 0.0;
@@ -59,8 +61,8 @@ Errors compare(std::span<const double> ours, std::span<const double> reference) 
 
 Errors compare(const Image& ours, const Image& reference, const Display& display) {
   if (ours.width != reference.width || ours.height != reference.height || ours.pixels.size() != reference.pixels.size())
-    throw Error(Exit::mismatch, fmt::format("a picture of {}x{} cannot be compared with a reference of {}x{}", ours.width,
-                                            ours.height, reference.width, reference.height));
+    throw Error(Exit::mismatch, fmt::format("a picture of {}x{} cannot be compared with a reference of {}x{}",
+                                            ours.width, ours.height, reference.width, reference.height));
   Errors e = compare(values(ours), values(reference));
   if (!e.finite()) return e;
   double sum = 0.0;
@@ -74,9 +76,11 @@ Errors compare(const Image& ours, const Image& reference, const Display& display
 
 std::string describe(const Errors& e) {
   if (!e.finite())
-    return fmt::format("{} of {} values are NaN or infinite (in the reference: {}): no score", e.not_finite, e.values, e.not_finite_reference);
-  return fmt::format("relative RMSE {:.3g}, relative error 99 % below {:.3g}, at most {:.3g}, bias {:+.3g}, RMSE on 0-255 {:.3g}",
-                     e.relative_rmse, e.p99_relative, e.max_relative, e.mean_bias, e.rmse_255);
+    return fmt::format("{} of {} values are NaN or infinite (in the reference: {}): no score", e.not_finite, e.values,
+                       e.not_finite_reference);
+  return fmt::format(
+      "relative RMSE {:.3g}, relative error 99 % below {:.3g}, at most {:.3g}, bias {:+.3g}, RMSE on 0-255 {:.3g}",
+      e.relative_rmse, e.p99_relative, e.max_relative, e.mean_bias, e.rmse_255);
 }
 
 }  // namespace welkin::measure

@@ -100,7 +100,8 @@ def draw(points, front, facts, axis):
     where = [facts.get(key, "?") for key in ("device", "driver", "resolution")]
     where += ["software driver"] * (facts.get("software driver") == "yes")
     title = f"{facts.get('chapter', '')} · {facts.get('scene', '')}: error against time"
-    labels = "".join(f"set label {quoted(' ' + text)} at {t:.9g},{e:.9g} font ',10' noenhanced offset 0.4,0.5\n"
+    labels = "".join(f"set label {quoted(text)} at {t:.9g},{e:.9g} font ',10' noenhanced "
+                     f"{'right offset 0,-0.9' if t > front[0][0] else 'left offset 0,0.8'}\n"
                      for t, e, text in sorted({front[0], front[len(front) // 2], front[-1]}))
     times, errors = [p[0] for p in points], [p[1] for p in points]
     script = f"""set encoding utf8

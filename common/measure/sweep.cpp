@@ -11,7 +11,8 @@ std::vector<std::vector<double>> ladder_settings(const Settings& settings) {
   for (const Knob& knob : settings.knobs()) {
     const bool climbs = !knob.ladder.empty() && !settings.was_set(knob.name);
     const std::vector<double> rungs = climbs ? knob.ladder : std::vector<double>{settings.number(knob.name)};
-    if (combinations.size() * rungs.size() > 100'000) fail("the ladders of this chapter's knobs make more than 100000 combinations: fix some with --set");
+    if (combinations.size() * rungs.size() > 100'000)
+      fail("the ladders of this chapter's knobs make more than 100000 combinations: fix some with --set");
     std::vector<std::vector<double>> longer;
     for (const auto& head : combinations)
       for (const double rung : rungs) {
@@ -30,14 +31,15 @@ Settings with_values(Settings settings, const std::vector<double>& values) {
   return settings;
 }
 
-void write_sweep_csv(const std::filesystem::path& file, const std::vector<Knob>& knobs, const std::vector<SweepRow>& rows,
-                     const SweepHeader& header) {
+void write_sweep_csv(const std::filesystem::path& file, const std::vector<Knob>& knobs,
+                     const std::vector<SweepRow>& rows, const SweepHeader& header) {
   std::vector<std::string> names = {"view"};
   for (const Knob& knob : knobs) names.push_back("knob:" + knob.name);
   names.insert(names.end(), {"gpu_ms_median", "gpu_ms_min", "gpu_ms_max", "wall_ms"});
   if (!rows.empty())
     for (const auto& pass : rows.front().passes) names.push_back("pass_ms:" + pass.first);
-  names.insert(names.end(), {"bytes", "relative_rmse", "max_relative", "p99_relative", "mean_bias", "rmse_255", "not_finite"});
+  names.insert(names.end(),
+               {"bytes", "relative_rmse", "max_relative", "p99_relative", "mean_bias", "rmse_255", "not_finite"});
 
   std::vector<std::vector<std::string>> lines;
   for (const auto& [values, view, gpu, wall, passes, bytes, e] : rows) {
@@ -51,10 +53,14 @@ void write_sweep_csv(const std::filesystem::path& file, const std::vector<Knob>&
     line.push_back(fmt::format("{}", e.not_finite + e.not_finite_reference));
     lines.push_back(std::move(line));
   }
-  const std::vector<std::string> comments = {
-      "chapter: " + header.chapter, "scene: " + header.scene, "device: " + header.device, "driver: " + header.driver,
-      std::string("software driver: ") + (header.software ? "yes" : "no"), fmt::format("resolution: {}x{}", header.width, header.height),
-      "reference: " + header.reference, "date: " + header.date};
+  const std::vector<std::string> comments = {"chapter: " + header.chapter,
+                                             "scene: " + header.scene,
+                                             "device: " + header.device,
+                                             "driver: " + header.driver,
+                                             std::string("software driver: ") + (header.software ? "yes" : "no"),
+                                             fmt::format("resolution: {}x{}", header.width, header.height),
+                                             "reference: " + header.reference,
+                                             "date: " + header.date};
   write_csv(file, comments, names, lines);
 }
 

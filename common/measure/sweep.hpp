@@ -38,7 +38,7 @@ struct SweepHeader {
 
 // Columns: view, knob:NAME..., gpu_ms_median, gpu_ms_min, gpu_ms_max, wall_ms, pass_ms:NAME..., bytes, relative_rmse,
 // max_relative, p99_relative, mean_bias, rmse_255, not_finite. A row with NaN or infinities has scores "nan".
-void write_sweep_csv(const std::filesystem::path& file, const std::vector<Knob>& knobs, const std::vector<SweepRow>& rows,
-                     const SweepHeader& header);
+void write_sweep_csv(const std::filesystem::path& file, const std::vector<Knob>& knobs,
+                     const std::vector<SweepRow>& rows, const SweepHeader& header);
 
 }  // namespace welkin::measure

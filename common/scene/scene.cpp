@@ -34,9 +34,7 @@ std::string known_scenes(const fs::path& directory) {
 // The shortest text that reads back as the same value; + 0.0 because "-0" would be read as the whole number
 // 0.
 std::string number(double value) { return fmt::format("{}", value + 0.0); }
-std::string triple(const glm::dvec3& v) {
-  return fmt::format("[{}, {}, {}]", number(v.x), number(v.y), number(v.z));
-}
+std::string triple(const glm::dvec3& v) { return fmt::format("[{}, {}, {}]", number(v.x), number(v.y), number(v.z)); }
 
 // A TOML basic string.
 std::string quoted(const std::string& text) {
@@ -54,16 +52,11 @@ std::string quoted(const std::string& text) {
 
 const char* text(Phase phase) {
   switch (phase) {
-    case Phase::henyey_greenstein:
-      return "henyey_greenstein";
-    case Phase::cornette_shanks:
-      return "cornette_shanks";
-    case Phase::draine:
-      return "draine";
-    case Phase::double_hg:
-      return "double_hg";
-    case Phase::rayleigh:
-      return "rayleigh";
+    case Phase::henyey_greenstein: return "henyey_greenstein";
+    case Phase::cornette_shanks: return "cornette_shanks";
+    case Phase::draine: return "draine";
+    case Phase::double_hg: return "double_hg";
+    case Phase::rayleigh: return "rayleigh";
   }
   return "rayleigh";
 }
@@ -73,8 +66,7 @@ bool any(const glm::dvec3& v) { return v.x != 0.0 || v.y != 0.0 || v.z != 0.0; }
 }  // namespace
 
 const Medium* Scene::medium(const std::string& kind) const {
-  const auto found =
-      std::find_if(media.begin(), media.end(), [&](const Medium& m) { return m.kind == kind; });
+  const auto found = std::find_if(media.begin(), media.end(), [&](const Medium& m) { return m.kind == kind; });
   return found == media.end() ? nullptr : &*found;
 }
 
@@ -95,33 +87,28 @@ const View& Scene::view(const std::string& wanted) const {
 Scene load_scene(const std::string& name_or_file, const fs::path& scenes_directory) {
   if (name_or_file.empty()) fail("no scene named: known are {}", known_scenes(scenes_directory));
   fs::path path = name_or_file;
-  if (name_or_file.find('\0') != std::string::npos)
-    fail("scene file {}: not a file name", one_line(name_or_file));
+  if (name_or_file.find('\0') != std::string::npos) fail("scene file {}: not a file name", one_line(name_or_file));
   if (plain_name(name_or_file)) {
     path = scenes_directory / (name_or_file + ".toml");
     std::error_code error;
     if (!fs::exists(path, error))
-      fail("unknown scene '{}': known are {}; a file's name ends in .toml or .png",
-           one_line(name_or_file, 100), known_scenes(scenes_directory));
+      fail("unknown scene '{}': known are {}; a file's name ends in .toml or .png", one_line(name_or_file, 100),
+           known_scenes(scenes_directory));
   }
   const std::string shown = one_line(path.string());
   std::optional<std::string> text;
   try {
-    text = path.extension() == ".png" ? image::read_png_text(path, "welkin.scene")
-                                      : read_file(path, kLargestFile);
+    text = path.extension() == ".png" ? image::read_png_text(path, "welkin.scene") : read_file(path, kLargestFile);
   } catch (const Error& error) {  // those name the file as it is, line breaks included
     throw Error(error.exit_code, one_line(error.what()));
   }
-  if (!text)
-    fail("scene file {}: this picture carries no scene; accepted is a .png that a chapter wrote", shown);
+  if (!text) fail("scene file {}: this picture carries no scene; accepted is a .png that a chapter wrote", shown);
   return parse_scene(*text, path.extension() == ".png" ? shown + " (embedded scene)" : shown);
 }
 
 std::string write_scene(const Scene& scene) {
   std::string out = fmt::format("version = 1\nname = {}\n\n", quoted(scene.name));
-  const auto line = [&out](const char* key, const std::string& value) {
-    out += fmt::format("{} = {}\n", key, value);
-  };
+  const auto line = [&out](const char* key, const std::string& value) { out += fmt::format("{} = {}\n", key, value); };
   out += "[planet]\n";
   line("ground_radius_km", number(scene.planet.ground_radius_km));
   line("top_radius_km", number(scene.planet.top_radius_km));

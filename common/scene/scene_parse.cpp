@@ -20,8 +20,7 @@ constexpr size_t kMostViews = 64, kMostSettings = 256, kLongestValue = 200;
 
 void check_top(const Section& root) {
   if (!has(root, "version"))
-    fail_at(*root.file, root.table->source(), "no version",
-            fmt::format("a scene says version = {}", kVersion));
+    fail_at(*root.file, root.table->source(), "no version", fmt::format("a scene says version = {}", kVersion));
   const toml::node& version = *root.table->get("version");
   if (!version.is_integer() || version.as_integer()->get() != kVersion)
     fail_at(*root.file, version.source(), fmt::format("version {}", describe(version)),
@@ -44,8 +43,7 @@ void read_planet(const Section& section, Planet& planet) {
     fail_at(*section.file, section.table->source(), "planet with one radius",
             "accepted is ground_radius_km and top_radius_km together, or neither");
   const double thinnest = planet.ground_radius_km + 1, thickest = planet.ground_radius_km + 2000;
-  read(section, "top_radius_km", planet.top_radius_km,
-       {thinnest, thickest, "km (1 to 2000 km above the ground)"});
+  read(section, "top_radius_km", planet.top_radius_km, {thinnest, thickest, "km (1 to 2000 km above the ground)"});
   read(section, "ground_albedo", planet.ground_albedo, {0, 1});
 }
 
@@ -61,8 +59,8 @@ void read_absorption(const Section& section, Medium& medium) {
   for (int i = 0; i < 3; ++i)
     if (medium.absorption_per_km[i] < 0)
       fail_at(*section.file, place(section, "extinction_per_km"),
-              fmt::format("medium.extinction_per_km[{}] = {} is less than scattering_per_km[{}] = {}", i,
-                          extinction[i], i, medium.scattering_per_km[i]),
+              fmt::format("medium.extinction_per_km[{}] = {} is less than scattering_per_km[{}] = {}", i, extinction[i],
+                          i, medium.scattering_per_km[i]),
               "accepted is extinction = scattering + absorption, so at least the scattering");
 }
 
@@ -92,10 +90,9 @@ Medium read_medium(const Section& section) {
     check_keys(named, {"kind", "scattering_per_km", "absorption_per_km", "extinction_per_km", "profile",
                        "scale_height_km", "phase", "g", "draine_alpha", "second_g", "second_weight"});
     need(named, "scattering_per_km", "accepted is " + text_of(kCoefficient));
-    constexpr Phase kPhases[] = {Phase::henyey_greenstein, Phase::cornette_shanks, Phase::draine,
-                                 Phase::double_hg};
-    medium.phase = kPhases[read_choice(section, "phase",
-                                       {"henyey_greenstein", "cornette_shanks", "draine", "double_hg"}, 1)];
+    constexpr Phase kPhases[] = {Phase::henyey_greenstein, Phase::cornette_shanks, Phase::draine, Phase::double_hg};
+    medium.phase =
+        kPhases[read_choice(section, "phase", {"henyey_greenstein", "cornette_shanks", "draine", "double_hg"}, 1)];
     medium.g = 0.8;
     read(section, "g", medium.g, {-0.999, 0.999});
     read(section, "draine_alpha", medium.draine_alpha, {0, 100});
@@ -104,10 +101,9 @@ Medium read_medium(const Section& section) {
   } else {
     medium.kind = "ozone";
     medium.profile = Profile::tent;
-    check_keys(named, {"kind", "absorption_per_km", "extinction_per_km", "profile", "peak_altitude_km",
-                       "half_width_km"});
-    if (!has(section, "extinction_per_km"))
-      need(named, "absorption_per_km", "accepted is " + text_of(kCoefficient));
+    check_keys(named,
+               {"kind", "absorption_per_km", "extinction_per_km", "profile", "peak_altitude_km", "half_width_km"});
+    if (!has(section, "extinction_per_km")) need(named, "absorption_per_km", "accepted is " + text_of(kCoefficient));
   }
   read(section, "scattering_per_km", medium.scattering_per_km, kCoefficient);
   read_absorption(section, medium);
@@ -119,8 +115,8 @@ Medium read_medium(const Section& section) {
 }
 
 void read_sun(const Section& section, Sun& sun) {
-  check_keys(section, {"zenith_deg", "azimuth_deg", "utc", "latitude_deg", "longitude_deg",
-                       "angular_radius_deg", "irradiance", "disc"});
+  check_keys(section, {"zenith_deg", "azimuth_deg", "utc", "latitude_deg", "longitude_deg", "angular_radius_deg",
+                       "irradiance", "disc"});
   read(section, "zenith_deg", sun.zenith_deg, {0, 180, "deg"});
   read_azimuth(section, "azimuth_deg", sun.azimuth_deg);
   read(section, "angular_radius_deg", sun.angular_radius_deg, {0.001, 45, "deg"});
@@ -151,8 +147,7 @@ void read_sun(const Section& section, Sun& sun) {
 }
 
 View read_view(const Section& section, double sun_azimuth_deg) {
-  check_keys(section,
-             {"name", "altitude_km", "azimuth_deg", "azimuth_from_sun_deg", "elevation_deg", "fov_deg"});
+  check_keys(section, {"name", "altitude_km", "azimuth_deg", "azimuth_from_sun_deg", "elevation_deg", "fov_deg"});
   need(section, "name", "every [[view]] has one, for example name = \"horizon\"");
   View view;
   read_name(section, "name", view.name);
@@ -168,7 +163,7 @@ View read_view(const Section& section, double sun_azimuth_deg) {
 // Knob names belong to chapters, so only their spelling is checked here; the chapter checks the rest.
 void read_settings(const Section& section, Scene& scene) {
   std::vector<const toml::key*> keys;
-  for (auto&& [key, node] : *section.table) keys.push_back(&key);
+  for (auto&& entry : *section.table) keys.push_back(&entry.first);
   std::sort(keys.begin(), keys.end(), earlier);
   if (keys.size() > kMostSettings)
     fail_at(*section.file, keys[kMostSettings]->source(), fmt::format("{} settings", keys.size()),
@@ -190,9 +185,8 @@ void read_settings(const Section& section, Scene& scene) {
     if (node.is_number()) value = describe(node);
     const bool finite = !node.is_floating_point() || std::isfinite(node.as_floating_point()->get());
     if (!finite || value.empty() || value.size() > kLongestValue || one_line(value) != value)
-      fail_value(
-          section, name, node,
-          fmt::format("a finite number, true, false or quoted text of 1 to {} characters", kLongestValue));
+      fail_value(section, name, node,
+                 fmt::format("a finite number, true, false or quoted text of 1 to {} characters", kLongestValue));
     scene.settings.emplace_back(name, value);
   }
 }
@@ -221,8 +215,7 @@ Scene parse_scene(const std::string& text, const std::string& file) {
   for_each_table(root, "medium", [&](const Section& section) {
     const Medium medium = read_medium(section);
     if (scene.medium(medium.kind))
-      fail_at(file, place(section, "kind"), fmt::format("second medium '{}'", medium.kind),
-              "each kind at most once");
+      fail_at(file, place(section, "kind"), fmt::format("second medium '{}'", medium.kind), "each kind at most once");
     scene.media.push_back(medium);
   });
   for_table(root, "sun", [&](const Section& section) { read_sun(section, scene.sun); });
@@ -230,11 +223,9 @@ Scene parse_scene(const std::string& text, const std::string& file) {
   for_each_table(root, "view", [&](const Section& section) {
     scene.views.push_back(read_view(section, scene.sun.azimuth_deg));
     if (!names.insert(scene.views.back().name).second)
-      fail_at(file, place(section, "name"), fmt::format("second view '{}'", scene.views.back().name),
-              "each name once");
+      fail_at(file, place(section, "name"), fmt::format("second view '{}'", scene.views.back().name), "each name once");
     if (names.size() > kMostViews)
-      fail_at(file, section.table->source(), "too many views",
-              fmt::format("accepted are up to {}", kMostViews));
+      fail_at(file, section.table->source(), "too many views", fmt::format("accepted are up to {}", kMostViews));
   });
   if (scene.views.empty()) fail_at(file, table.source(), "no views", "a scene has at least one [[view]]");
   for_table(root, "post", [&](const Section& section) {

@@ -55,11 +55,10 @@ struct Section {
 
 using Names = std::initializer_list<const char*>;
 
-[[noreturn]] inline void fail_at(const std::string& file, const toml::source_region& where,
-                                 const std::string& what, const std::string& accepted) {
+[[noreturn]] inline void fail_at(const std::string& file, const toml::source_region& where, const std::string& what,
+                                 const std::string& accepted) {
   // Something without a place of its own (an empty file) is reported at the start.
-  const auto line = std::max<unsigned>(where.begin.line, 1),
-             column = std::max<unsigned>(where.begin.column, 1);
+  const auto line = std::max<unsigned>(where.begin.line, 1), column = std::max<unsigned>(where.begin.column, 1);
   fail("{} at {}:{}:{}: {}", one_line(what, 200), one_line(file), line, column, one_line(accepted));
 }
 
@@ -93,7 +92,8 @@ inline bool earlier(const toml::key* a, const toml::key* b) {
 // The key furthest up in the file that is not one of `known`, or nullptr.
 inline const toml::key* first_unknown(const Section& section, const Names& known) {
   const toml::key* first = nullptr;
-  for (auto&& [key, node] : *section.table) {
+  for (auto&& entry : *section.table) {
+    const toml::key& key = entry.first;
     if (std::any_of(known.begin(), known.end(), [&](const char* name) { return key == name; })) continue;
     if (!first || earlier(&key, first)) first = &key;
   }
@@ -102,8 +102,7 @@ inline const toml::key* first_unknown(const Section& section, const Names& known
 
 inline void check_keys(const Section& section, const Names& known) {
   if (const toml::key* key = first_unknown(section, known))
-    fail_at(*section.file, key->source(),
-            fmt::format("unknown key '{}' in {}", one_line(key->str(), 60), section.name),
+    fail_at(*section.file, key->source(), fmt::format("unknown key '{}' in {}", one_line(key->str(), 60), section.name),
             fmt::format("known are {}", fmt::join(known, ", ")));
 }
 
@@ -111,14 +110,13 @@ inline std::string text_of(const Range& range) {
   return fmt::format("{:g} to {:g}{}{}", range.minimum, range.maximum, *range.unit ? " " : "", range.unit);
 }
 
-inline double checked(const Section& section, std::string_view key, const toml::node& node,
-                      const Range& range, const std::string& accepted) {
+inline double checked(const Section& section, std::string_view key, const toml::node& node, const Range& range,
+                      const std::string& accepted) {
   if (!node.is_number()) fail_value(section, key, node, accepted);
   const double value =
       node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
-  if (!(value >= range.minimum && value <= range.maximum))
-    fail_value(section, key, node, accepted);  // NaN too
-  return value + 0.0;                          // -0 becomes 0
+  if (!(value >= range.minimum && value <= range.maximum)) fail_value(section, key, node, accepted);  // NaN too
+  return value + 0.0;                                                                                 // -0 becomes 0
 }
 
 inline void read(const Section& section, std::string_view key, double& value, const Range& range) {
@@ -127,8 +125,7 @@ inline void read(const Section& section, std::string_view key, double& value, co
 }
 
 // An azimuth, from `origin_deg`, brought to 0 <= azimuth < 360.
-inline void read_azimuth(const Section& section, std::string_view key, double& value,
-                         double origin_deg = 0.0) {
+inline void read_azimuth(const Section& section, std::string_view key, double& value, double origin_deg = 0.0) {
   if (!has(section, key)) return;
   read(section, key, value, {-360, 360, "deg"});
   value = std::fmod(origin_deg + value, 360.0);
@@ -146,12 +143,10 @@ inline void read(const Section& section, std::string_view key, glm::dvec3& value
     return;
   }
   if (array->size() != 3)
-    fail_at(*section.file, node->source(),
-            fmt::format("{} has {} numbers", full_name(section, key), array->size()),
+    fail_at(*section.file, node->source(), fmt::format("{} has {} numbers", full_name(section, key), array->size()),
             "accepted is " + accepted);
   for (int i = 0; i < 3; ++i)
-    value[i] =
-        checked(section, fmt::format("{}[{}]", key, i), *array->get(static_cast<size_t>(i)), range, accepted);
+    value[i] = checked(section, fmt::format("{}[{}]", key, i), *array->get(static_cast<size_t>(i)), range, accepted);
 }
 
 inline void read(const Section& section, std::string_view key, bool& value) {
@@ -170,15 +165,14 @@ inline void read_name(const Section& section, std::string_view key, std::string&
   if (!node->is_string()) fail_value(section, key, *node, accepted);
   value = node->as_string()->get();
   const bool good = std::all_of(value.begin(), value.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-           c == '-' || c == '.';
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' ||
+           c == '.';
   });
   if (!good || value.empty() || value.size() > kLongestName) fail_value(section, key, *node, accepted);
 }
 
 // Index of the text in `choices`; `otherwise` when absent.
-inline size_t read_choice(const Section& section, std::string_view key, const Names& choices,
-                          size_t otherwise) {
+inline size_t read_choice(const Section& section, std::string_view key, const Names& choices, size_t otherwise) {
   const toml::node* node = section.table->get(key);
   if (!node) return otherwise;
   size_t i = 0;
@@ -197,8 +191,8 @@ inline const toml::source_region& place(const Section& section, std::string_view
 // Two ways to say the same thing: at most one may be used.
 inline void check_exclusive(const Section& section, std::string_view key, std::string_view other) {
   if (has(section, key) && has(section, other))
-    fail_at(*section.file, place(section, other),
-            fmt::format("{} given beside {}", full_name(section, other), key), "accepted is one of the two");
+    fail_at(*section.file, place(section, other), fmt::format("{} given beside {}", full_name(section, other), key),
+            "accepted is one of the two");
 }
 
 // The tables of an [[array]]; calls `each` for every one in the file's order.
@@ -247,8 +241,8 @@ inline toml::table parse_table(const std::string& text, const std::string& file)
     const size_t middle = sound + (faulty - sound) / 2;
     (faults(middle) ? faulty : sound) = middle;
   }
-  const auto line = static_cast<toml::source_index>(
-      1 + std::count(text.begin(), text.begin() + static_cast<long>(sound), '\n'));
+  const auto line =
+      static_cast<toml::source_index>(1 + std::count(text.begin(), text.begin() + static_cast<long>(sound), '\n'));
   const size_t start = sound == 0 ? 0 : text.rfind('\n', sound - 1) + 1;
   fail_at(file, {{line, static_cast<toml::source_index>(sound - start + 1)}, {}, {}}, "not valid TOML",
           "this character does not belong here");

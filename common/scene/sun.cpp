@@ -56,8 +56,7 @@ bool take(std::string_view& text, std::string_view expected) {
 
 // hh:mm[:ss[.fff]][Z] and nothing after it.
 bool take_time(std::string_view text, DateTime& time) {
-  if (!take_digits(text, 2, time.hour) || !take(text, ":") || !take_digits(text, 2, time.minute))
-    return false;
+  if (!take_digits(text, 2, time.hour) || !take(text, ":") || !take_digits(text, 2, time.minute)) return false;
   if (take(text, ":")) {
     int whole = 0;
     if (!take_digits(text, 2, whole)) return false;
@@ -79,13 +78,12 @@ DateTime present() {
   const auto midnight = floor<days>(now);
   const year_month_day date(midnight);
   const hh_mm_ss clock(now - midnight);
-  return {
-      static_cast<int>(date.year()),
-      static_cast<int>(static_cast<unsigned>(date.month())),
-      static_cast<int>(static_cast<unsigned>(date.day())),
-      static_cast<int>(clock.hours().count()),
-      static_cast<int>(clock.minutes().count()),
-      static_cast<double>(clock.seconds().count()) + 1e-3 * static_cast<double>(clock.subseconds().count())};
+  return {static_cast<int>(date.year()),
+          static_cast<int>(static_cast<unsigned>(date.month())),
+          static_cast<int>(static_cast<unsigned>(date.day())),
+          static_cast<int>(clock.hours().count()),
+          static_cast<int>(clock.minutes().count()),
+          static_cast<double>(clock.seconds().count()) + 1e-3 * static_cast<double>(clock.subseconds().count())};
 }
 
 DateTime read_utc(const std::string& utc) {
@@ -98,20 +96,18 @@ DateTime read_utc(const std::string& utc) {
     time.second = 0.0;
     good = take_time(text, time);
   } else {
-    good = take_digits(text, 4, time.year) && take(text, "-") && take_digits(text, 2, time.month) &&
-           take(text, "-") && take_digits(text, 2, time.day) && take(text, "T") && take_time(text, time);
+    good = take_digits(text, 4, time.year) && take(text, "-") && take_digits(text, 2, time.month) && take(text, "-") &&
+           take_digits(text, 2, time.day) && take(text, "T") && take_time(text, time);
   }
   const std::chrono::year_month_day date{std::chrono::year(time.year),
                                          std::chrono::month(static_cast<unsigned>(time.month)),
                                          std::chrono::day(static_cast<unsigned>(time.day))};
-  if (!good || !date.ok() || time.year < 1900 || time.year > 2100)
-    fail("utc '{}': {}", one_line(utc, 60), kAccepted);
+  if (!good || !date.ok() || time.year < 1900 || time.year > 2100) fail("utc '{}': {}", one_line(utc, 60), kAccepted);
   return time;
 }
 
 void check_angle(const char* name, double value, double limit) {
-  if (!(std::abs(value) <= limit))
-    fail("{} = {:g}: accepted is -{:g} to {:g} deg", name, value, limit, limit);
+  if (!(std::abs(value) <= limit)) fail("{} = {:g}: accepted is -{:g} to {:g} deg", name, value, limit, limit);
 }
 
 }  // namespace
@@ -124,8 +120,7 @@ SunAngles sun_angles(const std::string& utc, double latitude_deg, double longitu
   // Negative codes are errors; positive ones warn of a year without announced leap seconds, which is
   // accepted.
   double utc1 = 0, utc2 = 0, tai1 = 0, tai2 = 0, tt1 = 0, tt2 = 0;
-  if (eraDtf2d("UTC", time.year, time.month, time.day, time.hour, time.minute, time.second, &utc1, &utc2) <
-          0 ||
+  if (eraDtf2d("UTC", time.year, time.month, time.day, time.hour, time.minute, time.second, &utc1, &utc2) < 0 ||
       eraUtctai(utc1, utc2, &tai1, &tai2) < 0 || eraTaitt(tai1, tai2, &tt1, &tt2) < 0)
     fail("utc '{}': {}", one_line(utc, 60), kAccepted);
 

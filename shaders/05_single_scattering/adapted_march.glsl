@@ -1,6 +1,6 @@
 // The adapted rule and the whole ray: panels of Gauss nodes where the light is. Included by single_scattering.glsl.
 
-const int kMaxCells = 64;          // cells of the estimate that places the panels: four per panel, at least eight
+const int kMaxCells = 32;          // cells of the estimate that places the panels: four per panel, at least eight
 const float kUnseen = 1.0e-4;      // light below this share of the peak, in every channel, is left out at the ends
 const float kDim = 1.0e-2;         // share of the peak below which light asks for fewer nodes
 const float kSlopeWeight = 0.5;    // nodes asked for per unit of optical depth, relative to those per count
@@ -80,11 +80,13 @@ RayLight adapted_march(Atmosphere atmosphere, AirRay ray, ScatteringTowardsEye s
       peak = max(peak, light[j]);
     }
   }
+  // With more panels the ends matter sooner: what is left out must shrink with the error.
+  float unseen = kUnseen * min(1.0, 64.0 / float(panels * panels * panels));
   float weight[kMaxCells];
   for (int k = 0; k < 2; k++) {
     for (int j = piece[k].first_cell; j <= piece[k].last_cell; j++) {
       vec3 share = light[j] / peak;
-      if (max(max(share.x, share.y), share.z) >= kUnseen) {
+      if (max(max(share.x, share.y), share.z) >= unseen) {
         piece[k].first_seen = min(piece[k].first_seen, j);
         piece[k].last_seen = j;
       }
@@ -139,7 +141,7 @@ vec3 lit_ground(Atmosphere atmosphere, float mu_sun, int light_steps, int rule) 
     column = sun_columns(atmosphere, 0.0, mu_sun, light_steps);
   } else {
     float radius_km = atmosphere.shape.x;
-    float light_length = distance_to_shell_from_inside(radius_km, 0.0, mu_sun, atmosphere.shape.y - radius_km);
+    float light_length = distance_to_shell_from_inside(radius_km, 0.0, mu_sun, atmosphere.shape.y);
     for (int j = 0; j < light_steps; j++) {
       Segment step = quadrature_segment(rule, j, light_steps);
       float h = altitude_along(radius_km, 0.0, mu_sun, step.sample_at * light_length);
@@ -152,7 +154,8 @@ vec3 lit_ground(Atmosphere atmosphere, float mu_sun, int light_steps, int rule) 
 // Radiance and transmittance of a ray: single scattering and the directly lit ground, without the sun's disc.
 //   altitude_km     of the camera, any value; below ground counts as on it
 //   view_direction  unit vector in the camera's local frame, z up; sun_direction likewise
-//   view_steps, light_steps >= 1 samples; Gauss-Legendre and adapted use panels of four and round up
+//   view_steps, light_steps >= 1 samples. Gauss-Legendre rounds both up to a multiple of four; adapted rounds the view up
+//                   to eight (and needs eight for each of two lit pieces), the light to four (eight where it dips)
 //   rule            kRuleLeft ... kRuleAdapted
 // A ray that misses the air gives radiance 0 and transmittance 1.
 RayLight single_scattering(Atmosphere atmosphere, float altitude_km, vec3 view_direction, vec3 sun_direction, int view_steps,

@@ -147,7 +147,7 @@ float ozone_from_tangent(Atmosphere atmosphere, Line line, float altitude_km, fl
 // The planet is never in the way: a tangent point below the ground is rounding and counts as touching it.
 vec3 sun_columns(Atmosphere atmosphere, float altitude_km, float mu_sun, int steps) {
   float radius_km = atmosphere.shape.x;
-  float top_km = atmosphere.shape.y - radius_km;
+  float top_km = atmosphere.shape.y;
   float r_mu = (radius_km + altitude_km) * mu_sun;
   Line line = line_through(radius_km, altitude_km, mu_sun, sqrt(max((1.0 - mu_sun) * (1.0 + mu_sun), 0.0)));
   if (mu_sun < 0.0 && line.tangent_km < 0.0) {

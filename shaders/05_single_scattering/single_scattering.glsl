@@ -1,5 +1,5 @@
-// Single scattering along a ray: sunlight that is deflected once. Pure functions; km, radiance per unit of radiance of
-// the sun's irradiance given.
+// Single scattering along a ray: sunlight that is deflected once. Pure functions; lengths in km, radiance in units of the
+// solar irradiance given in the atmosphere (per steradian).
 //
 //   L = E_sun * integral of  T(eye, t) [ beta_R rho_R P_R + beta_M rho_M P_M ] T(t, sun) V(t) dt  +  lit ground
 //
@@ -15,7 +15,7 @@ const int kRuleMidpoint = 1;       // in the middle
 const int kRuleHillaire = 2;       // at 0.3 of the segment (Hillaire 2020)
 const int kRuleNonuniform = 3;     // segments [(i/N)^2, ((i+1)/N)^2] L, sample in the middle
 const int kRuleGaussLegendre = 4;  // panels of four Gauss-Legendre nodes; a segment's length is its weight
-const int kRuleAdapted = 5;        // panels in a coordinate that counts scale heights, placed where the light is
+const int kRuleAdapted = 5;        // panels of eight in a coordinate that counts scale heights, placed where the light is
 
 
 struct RayLight {
@@ -73,7 +73,7 @@ struct AirRay {
 // the zenith, theta_camera - theta_entry, whose cosine and sine are sums of products of order one: no digits are lost.
 AirRay enter_air(Atmosphere atmosphere, float camera_altitude_km, vec3 view, vec3 sun) {
   float radius_km = atmosphere.shape.x;
-  float top_km = atmosphere.shape.y - radius_km;
+  float top_km = atmosphere.shape.y;
   AirRay ray;
   ray.altitude_km = max(camera_altitude_km, 0.0);
   ray.mu = clamp(view.z, -1.0, 1.0);
@@ -120,7 +120,8 @@ AirRay enter_air(Atmosphere atmosphere, float camera_altitude_km, vec3 view, vec
 
 // Zenith cosine of the sun at distance t, where the altitude is h.
 float mu_sun_along(AirRay ray, float ground_radius_km, float t_km, float altitude_km) {
-  return clamp(((ground_radius_km + ray.altitude_km) * ray.mu_sun + t_km * ray.nu) / (ground_radius_km + altitude_km), -1.0, 1.0);
+  float along_sun = (ground_radius_km + ray.altitude_km) * ray.mu_sun + t_km * ray.nu;
+  return clamp(along_sun / (ground_radius_km + altitude_km), -1.0, 1.0);
 }
 
 bool sun_above_horizon(float ground_radius_km, float altitude_km, float mu_sun) {
@@ -130,9 +131,10 @@ bool sun_above_horizon(float ground_radius_km, float altitude_km, float mu_sun) 
 
 // The rules that sample the ray at places fixed beforehand, for the ray and for the path to the sun alike. Within a
 // segment source and extinction are constant: it gives S dt (1 - exp(-tau)) / tau.
-RayLight fixed_march(Atmosphere atmosphere, AirRay ray, ScatteringTowardsEye scattering, int view_steps, int light_steps, int rule) {
+RayLight fixed_march(Atmosphere atmosphere, AirRay ray, ScatteringTowardsEye scattering, int view_steps, int light_steps,
+                     int rule) {
   float radius_km = atmosphere.shape.x;
-  float top_km = atmosphere.shape.y - radius_km;
+  float top_km = atmosphere.shape.y;
   RayLight light;
   light.radiance = vec3(0.0, 0.0, 0.0);
   light.transmittance = vec3(1.0, 1.0, 1.0);
@@ -241,17 +243,29 @@ struct Stretch {
 
 // Eight Gauss-Legendre nodes on [0, 1], their weights, and row by row the integrals from 0 to each node of the
 // polynomial that interpolates the eight values (the Butcher matrix of the Gauss method).
-const float kGauss8Node[8] = {0.01985507175123188, 0.10166676129318664, 0.23723379504183550, 0.40828267875217511, 0.59171732124782495, 0.76276620495816450, 0.89833323870681336, 0.98014492824876809};
-const float kGauss8Weight[8] = {0.05061426814518813, 0.11119051722668724, 0.15685332293894363, 0.18134189168918100, 0.18134189168918100, 0.15685332293894363, 0.11119051722668724, 0.05061426814518813};
+const float kGauss8Node[8] = {
+    0.019855071751232, 0.101666761293187, 0.237233795041836, 0.408282678752175,
+    0.591717321247825, 0.762766204958164, 0.898333238706813, 0.980144928248768};
+const float kGauss8Weight[8] = {
+    0.050614268145188, 0.111190517226687, 0.156853322938944, 0.181341891689181,
+    0.181341891689181, 0.156853322938944, 0.111190517226687, 0.050614268145188};
 const float kGauss8UpTo[64] = {
-    0.025307134072594, -0.009105943305970, 0.006280831147030, -0.004483015613055, 0.003078491368327, -0.001917675254637, 0.000972757664059, -0.000277508327117,
-    0.054759321767554, 0.055595258613344, -0.013639796235782, 0.008149708858361, -0.005215352089147, 0.003139752985464, -0.001564934910949, 0.000442802304342,
-    0.048587535998913, 0.120859524997173, 0.078426661469472, -0.015975103361878, 0.008371732720226, -0.004643465862104, 0.002225714775285, -0.000618805695251,
-    0.051865520970581, 0.106193490148348, 0.170671134274554, 0.090670945844590, -0.016021041321025, 0.007241206561222, -0.003197814310361, 0.000859236584265,
-    0.049755031560923, 0.114388331537048, 0.149612116377721, 0.197362933010206, 0.090670945844590, -0.013817811335610, 0.004997027078339, -0.001251252825393,
-    0.051233073840439, 0.108964802451402, 0.161496788801048, 0.172970158968955, 0.197316995051059, 0.078426661469472, -0.009669007770486, 0.002026732146275,
-    0.050171465840846, 0.112755452137636, 0.153713569953480, 0.186557243778328, 0.173192182830820, 0.170493119174725, 0.055595258613344, -0.004145053622366,
-    0.050891776472305, 0.110217759562628, 0.158770998193581, 0.178263400320854, 0.185824907302236, 0.150572491791913, 0.120296460532657, 0.025307134072594};
+    0.025307134072594, -0.009105943305970, 0.006280831147030, -0.004483015613055,
+    0.003078491368327, -0.001917675254637, 0.000972757664059, -0.000277508327117,
+    0.054759321767554, 0.055595258613344, -0.013639796235782, 0.008149708858361,
+    -0.005215352089147, 0.003139752985464, -0.001564934910949, 0.000442802304342,
+    0.048587535998913, 0.120859524997173, 0.078426661469472, -0.015975103361878,
+    0.008371732720226, -0.004643465862104, 0.002225714775285, -0.000618805695251,
+    0.051865520970581, 0.106193490148348, 0.170671134274554, 0.090670945844590,
+    -0.016021041321025, 0.007241206561222, -0.003197814310361, 0.000859236584265,
+    0.049755031560923, 0.114388331537048, 0.149612116377721, 0.197362933010206,
+    0.090670945844590, -0.013817811335610, 0.004997027078339, -0.001251252825393,
+    0.051233073840439, 0.108964802451402, 0.161496788801048, 0.172970158968955,
+    0.197316995051059, 0.078426661469472, -0.009669007770486, 0.002026732146275,
+    0.050171465840846, 0.112755452137636, 0.153713569953480, 0.186557243778328,
+    0.173192182830820, 0.170493119174725, 0.055595258613344, -0.004145053622366,
+    0.050891776472305, 0.110217759562628, 0.158770998193581, 0.178263400320854,
+    0.185824907302236, 0.150572491791913, 0.120296460532657, 0.025307134072594};
 
 // One panel of eight Gauss nodes over counts [x_a, x_b]. Columns up to each node come from the panel's own densities, by
 // the integrals of their interpolating polynomial, so that the whole panel has one order.
@@ -356,5 +370,7 @@ Glimpse glimpse(Atmosphere atmosphere, AirRay ray, Line line, ScaleCount count, 
   result.column = column + density * dx;
   return result;
 }
+
 #include "05_single_scattering/adapted_march.glsl"
+
 #endif

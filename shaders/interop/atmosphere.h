@@ -18,7 +18,7 @@ struct Atmosphere {
   vec4 mie_scattering;  // xyz: scattering at the ground, 1/km; w: scale height, km
   vec4 mie_extinction;  // xyz: scattering + absorption at the ground, 1/km; w: asymmetry g, |g| < 1
   vec4 ozone;           // xyz: absorption at the peak, 1/km; w: altitude of the peak, km
-  vec4 shape;           // x: ground radius, km; y: top radius, km; z: ozone half width, km; w: sun's angular radius, rad
+  vec4 shape;           // x: ground radius, km; y: altitude of the top, km (its radius would be known to 0.5 m only); z: ozone half width, km; w: sun's angular radius, rad
   vec4 ground;          // xyz: albedo; w: asymmetry of the second lobe (double HG)
   vec4 sun;             // xyz: irradiance at the top of the atmosphere; w: Draine's alpha, or the second lobe's weight
 };

@@ -155,24 +155,12 @@ void mutate(std::string& text, const std::vector<std::string>& corpus) {
     case 1:
       if (at < text.size()) text[at] = static_cast<char>(below(256));
       break;
-    case 2:
-      text.erase(at, length);
-      break;
-    case 3:
-      text.insert(at, text.substr(below(text.size() + 1), length));
-      break;
-    case 4:
-      text.insert(at, any_of(kPieces));
-      break;
-    case 5:
-      replace_number(text);
-      break;
-    case 6:
-      replace_value(text);
-      break;
-    case 7:
-      text.resize(at);
-      break;
+    case 2: text.erase(at, length); break;
+    case 3: text.insert(at, text.substr(below(text.size() + 1), length)); break;
+    case 4: text.insert(at, any_of(kPieces)); break;
+    case 5: replace_number(text); break;
+    case 6: replace_value(text); break;
+    case 7: text.resize(at); break;
     case 8: {  // splice: the head of this file, the tail of another
       const std::string& other = any_of(corpus);
       text = text.substr(0, at) + other.substr(below(other.size() + 1));
@@ -193,9 +181,7 @@ void mutate(std::string& text, const std::vector<std::string>& corpus) {
       replace_number(text);
       replace_value(text);
       break;
-    case 11:
-      text.insert(at, std::string(1 + below(40), any_of(std::string("[{\"'.,=#\n\\ a1"))));
-      break;
+    case 11: text.insert(at, std::string(1 + below(40), any_of(std::string("[{\"'.,=#\n\\ a1")))); break;
     default: {  // another digit: most often still a scene
       const size_t digit = text.find_first_of("0123456789", at);
       if (digit != std::string::npos) text[digit] = static_cast<char>('0' + below(10));
@@ -213,20 +199,13 @@ std::string hostile(size_t which) {
   };
   const std::string head = "version = 1\n";
   switch (which) {
-    case 0:
-      return head + "a = " + repeat("[", 500000);
-    case 1:
-      return head + "a = " + repeat("{a=", 300000);
-    case 2:
-      return head + repeat("a.", 500000) + "a = 1";
-    case 3:
-      return head + "[" + repeat("a.", 500000) + "a]";
-    case 4:
-      return head + repeat("[" + repeat("a.", 500) + "b]\n", 900);
-    case 5:
-      return head + repeat(repeat("b.", 500) + "c = [\n", 900);
-    case 6:
-      return head + repeat("[[view]]\n", 100000);
+    case 0: return head + "a = " + repeat("[", 500000);
+    case 1: return head + "a = " + repeat("{a=", 300000);
+    case 2: return head + repeat("a.", 500000) + "a = 1";
+    case 3: return head + "[" + repeat("a.", 500000) + "a]";
+    case 4: return head + repeat("[" + repeat("a.", 500) + "b]\n", 900);
+    case 5: return head + repeat(repeat("b.", 500) + "c = [\n", 900);
+    case 6: return head + repeat("[[view]]\n", 100000);
     case 7: {
       std::string views = head;
       for (int i = 0; i < 40000; ++i) views += fmt::format("[[view]]\nname = \"v{}\"\n", i);
@@ -237,16 +216,11 @@ std::string hostile(size_t which) {
       for (int i = 0; i < 60000; ++i) settings += fmt::format("k{} = {}\n", i, i);
       return settings;
     }
-    case 9:
-      return head + "a = \"\"\"" + repeat("\n", 1000000);
-    case 10:
-      return repeat("#\n", 500000) + head;
-    case 11:
-      return std::string(1 << 20, '\0');
-    case 12:
-      return head + "a = [" + repeat("1,\n", 300000) + "]";
-    default:
-      return head + repeat("[[medium]]\nkind = \"mie\"\n" + repeat("c.", 500) + "c = {a = [[[1]]]}\n", 900);
+    case 9: return head + "a = \"\"\"" + repeat("\n", 1000000);
+    case 10: return repeat("#\n", 500000) + head;
+    case 11: return std::string(1 << 20, '\0');
+    case 12: return head + "a = [" + repeat("1,\n", 300000) + "]";
+    default: return head + repeat("[[medium]]\nkind = \"mie\"\n" + repeat("c.", 500) + "c = {a = [[[1]]]}\n", 900);
   }
 }
 
@@ -263,13 +237,10 @@ std::string broken(const Scene& scene) {
   if (!within(scene.planet.ground_albedo, 0, 1)) return "albedo";
   std::set<std::string> kinds, names;
   for (const welkin::Medium& m : scene.media) {
-    if (!kinds.insert(m.kind).second || (m.kind != "rayleigh" && m.kind != "mie" && m.kind != "ozone"))
-      return "kind";
+    if (!kinds.insert(m.kind).second || (m.kind != "rayleigh" && m.kind != "mie" && m.kind != "ozone")) return "kind";
     if (!within(m.scattering_per_km, 0, 100) || !within(m.absorption_per_km, 0, 100)) return "coefficients";
-    if (!(m.scale_height_km > 0) || !(m.half_width_km > 0) || !within(m.peak_altitude_km, 0, 2000))
-      return "profile";
-    if (!within(m.g, -0.999, 0.999) || !within(m.second_g, -0.999, 0.999) || !within(m.second_weight, 0, 1))
-      return "g";
+    if (!(m.scale_height_km > 0) || !(m.half_width_km > 0) || !within(m.peak_altitude_km, 0, 2000)) return "profile";
+    if (!within(m.g, -0.999, 0.999) || !within(m.second_g, -0.999, 0.999) || !within(m.second_weight, 0, 1)) return "g";
     if (!within(m.draine_alpha, 0, 100)) return "draine_alpha";
     if ((m.kind == "ozone") != (m.profile == welkin::Profile::tent)) return "profile of kind";
     if ((m.kind == "mie") == (m.phase == welkin::Phase::rayleigh)) return "phase of kind";
@@ -304,8 +275,7 @@ bool survives(const std::string& text, Counts& counts) {
     ++counts.accepted;
   } catch (const welkin::Error& error) {
     const std::string line = error.what();
-    const bool one_line =
-        std::none_of(line.begin(), line.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; });
+    const bool one_line = std::none_of(line.begin(), line.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; });
     if (line.empty() || !one_line || line.size() > 1200) fault = "message: " + line;
     if (line.find(" at mutated.toml:") == std::string::npos) fault = "message without its place: " + line;
     ++counts.refused;
@@ -345,7 +315,7 @@ int main(int argc, char** argv) {
   // Every outcome must be common, or the mutations test nothing.
   const size_t few = files / 20, read = counts.refused - counts.not_toml;
   if (files >= 1000) good = good && counts.accepted > few && counts.not_toml > few && read > few;
-  fmt::print("{} files: {} accepted, {} no TOML, {} no scene, {}\n", counts.accepted + counts.refused,
-             counts.accepted, counts.not_toml, read, good ? "none misbehaved" : "FAILED");
+  fmt::print("{} files: {} accepted, {} no TOML, {} no scene, {}\n", counts.accepted + counts.refused, counts.accepted,
+             counts.not_toml, read, good ? "none misbehaved" : "FAILED");
   return good ? 0 : 1;
 }

@@ -2,7 +2,6 @@
 #include "common/image/csv.hpp"
 
 #include <catch2/catch.hpp>
-
 #include <cmath>
 #include <random>
 
@@ -20,7 +19,9 @@ CsvTable parse(const std::string& text) { return parse_csv(text, "rays.csv", kRa
 }  // namespace
 
 TEST_CASE("CSV: columns by name, comments, blanks, CR LF", "[csv]") {
-  const CsvTable t = parse("# rays\n#\n\nnote, view_zenith_deg ,altitude_km\r\n sunset here ,\t89.9, +5e-4\r\n# between\nb,-0,2.\n\n,90.10,1e3");
+  const CsvTable t = parse(
+      "# rays\n#\n\nnote, view_zenith_deg ,altitude_km\r\n sunset here ,\t89.9, +5e-4\r\n# "
+      "between\nb,-0,2.\n\n,90.10,1e3");
   CHECK(t.rows == 3);
   CHECK(t.column("altitude_km") == std::vector<double>{0.0005, 2.0, 1000.0});
   CHECK(t.column("view_zenith_deg") == std::vector<double>{89.9, 0.0, 90.1});
@@ -33,21 +34,25 @@ TEST_CASE("CSV: columns by name, comments, blanks, CR LF", "[csv]") {
 
 TEST_CASE("CSV: each fault has its place and its line", "[csv]") {
   const std::string head = "altitude_km,view_zenith_deg\n";
-  CHECK_THROWS_WITH(parse(""), Equals("rays.csv: empty: expected a line of column names and at least one row below it"));
+  CHECK_THROWS_WITH(parse(""),
+                    Equals("rays.csv: empty: expected a line of column names and at least one row below it"));
   CHECK_THROWS_WITH(parse("# only this\n\n"), Contains("empty"));
   CHECK_THROWS_WITH(parse(head), Contains("at least one row"));
-  CHECK_THROWS_WITH(parse("altitude_km,zenith\n1,2\n"), Equals("rays.csv:1:1: column 'view_zenith_deg' is missing: there are altitude_km, zenith"));
+  CHECK_THROWS_WITH(parse("altitude_km,zenith\n1,2\n"),
+                    Equals("rays.csv:1:1: column 'view_zenith_deg' is missing: there are altitude_km, zenith"));
   CHECK_THROWS_WITH(parse(head + "1,2\n1,2,3\n"), Equals("rays.csv:3:5: 3 fields where the header has 2"));
   CHECK_THROWS_WITH(parse(head + "1\n"), Equals("rays.csv:2:1: 1 fields where the header has 2"));
   CHECK_THROWS_WITH(parse(head + "1, x\n"), Equals("rays.csv:2:4: view_zenith_deg 'x' is not a finite number"));
   for (const char* bad : {"nan", "inf", "-inf", "NaN", "", "1e999", "0x10", "1 2", "1;2", "--1"})
-    CHECK_THROWS_WITH(parse(head + "1," + bad + "\n"), Contains("rays.csv:2:3: view_zenith_deg '" + std::string(bad) + "' is not a finite number"));
+    CHECK_THROWS_WITH(parse(head + "1," + bad + "\n"),
+                      Contains("rays.csv:2:3: view_zenith_deg '" + std::string(bad) + "' is not a finite number"));
   CHECK_THROWS_WITH(parse(head + "1,\"2\"\n"), Equals("rays.csv:2:3: quotes are not accepted"));
   CHECK_THROWS_WITH(parse("altitude_km,altitude_km\n"), Equals("rays.csv:1:13: column 'altitude_km' occurs twice"));
   CHECK_THROWS_WITH(parse("altitude_km,,b\n"), Equals("rays.csv:1:13: a column without a name"));
   CHECK_THROWS_WITH(parse(std::string(300, ',')), Contains("301 columns"));
-  CHECK_THROWS_WITH(parse(head + "1," + std::string(1000, 'x')), Contains("xxx...'"));  // short, whatever the file holds
-  CHECK_THROWS_WITH(parse(head + "1,\x1b[2J\n"), Contains("'?[2J'"));                   // and harmless to a terminal
+  CHECK_THROWS_WITH(parse(head + "1," + std::string(1000, 'x')),
+                    Contains("xxx...'"));                              // short, whatever the file holds
+  CHECK_THROWS_WITH(parse(head + "1,\x1b[2J\n"), Contains("'?[2J'"));  // and harmless to a terminal
   std::string many = head;
   for (int i = 0; i < 1'000'001; ++i) many += "1,2\n";
   CHECK_THROWS_WITH(parse(many), Equals("rays.csv:1000002:1: more than the 1000000 rows accepted"));
@@ -55,14 +60,17 @@ TEST_CASE("CSV: each fault has its place and its line", "[csv]") {
 
 TEST_CASE("CSV: noise ends in Error or success, nothing else", "[csv]") {
   std::mt19937 random(1);
-  const std::string letters = "altitude_km,view_zenith_deg\n1,2\n#\r\n \t\"-+.e9,,\n\n", good = "altitude_km,view_zenith_deg\n1,2\n3,4\n";
+  const std::string letters = "altitude_km,view_zenith_deg\n1,2\n#\r\n \t\"-+.e9,,\n\n",
+                    good = "altitude_km,view_zenith_deg\n1,2\n3,4\n";
   int read = 0;
   for (int round = 0; round < 20000; ++round) {
     std::string text = good;
     for (size_t i = 0; i < 1 + random() % 5; ++i) {
       const size_t at = random() % text.size();
-      if (random() % 2) text[at] = random() % 8 ? letters[random() % letters.size()] : static_cast<char>(random());
-      else text.insert(at, 1, letters[random() % letters.size()]);
+      if (random() % 2)
+        text[at] = random() % 8 ? letters[random() % letters.size()] : static_cast<char>(random());
+      else
+        text.insert(at, 1, letters[random() % letters.size()]);
     }
     try {
       const CsvTable t = parse(text);

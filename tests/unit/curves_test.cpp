@@ -1,9 +1,9 @@
 // plot.py, run as users run it: the front and the slope of a sweep whose answer is known. Needs python3 and gnuplot.
 // WELKIN_SOURCE_DIRECTORY names the tree's root (a compile definition); the working directory is tried without it.
-#include <catch2/catch.hpp>
 #include <sys/wait.h>
 
 #include <array>
+#include <catch2/catch.hpp>
 #include <cstdio>
 
 #include "common/image/atomic_file.hpp"
@@ -24,7 +24,8 @@ struct Outcome {
 };
 
 Outcome plot(const std::string& arguments) {
-  std::FILE* pipe = ::popen(("python3 '" WELKIN_SOURCE_DIRECTORY "/common/measure/plot.py' " + arguments + " 2>&1").c_str(), "r");
+  std::FILE* pipe =
+      ::popen(("python3 '" WELKIN_SOURCE_DIRECTORY "/common/measure/plot.py' " + arguments + " 2>&1").c_str(), "r");
   REQUIRE(pipe != nullptr);
   std::string text;
   std::array<char, 4096> buffer;
@@ -34,7 +35,8 @@ Outcome plot(const std::string& arguments) {
 }
 
 const std::string kHead =
-    "# chapter: 05\n# scene: sunset\n# device: `id` \"GPU\"\n# driver: d 1\n# software driver: yes\n# resolution: 640x360\n"
+    "# chapter: 05\n# scene: sunset\n# device: `id` \"GPU\"\n# driver: d 1\n# software driver: yes\n# resolution: "
+    "640x360\n"
     "view,knob:view.steps,gpu_ms_median,wall_ms,relative_rmse\n";
 
 }  // namespace
@@ -44,7 +46,8 @@ TEST_CASE("plot: a second-order method buys a factor of four", "[curves]") {
   std::string csv = kHead;
   for (int steps = 8; steps <= 128; steps *= 2)  // error = 6.4 / steps^2; the second view is half as bad
     for (const double share : {1.0, 0.5})
-      csv += (share == 1.0 ? "east," : "west,") + std::to_string(steps) + "," + std::to_string(steps * 0.1) + ",9," + std::to_string(share * 6.4 / steps / steps) + "\n";
+      csv += (share == 1.0 ? "east," : "west,") + std::to_string(steps) + "," + std::to_string(steps * 0.1) + ",9," +
+             std::to_string(share * 6.4 / steps / steps) + "\n";
   csv += "east,999,5,9,0.9\nwest,999,5,9,0.9\n";  // slow and bad: on no front
   write_file_atomically(dir / "s.csv", csv);
   const std::string files = "'" + (dir / "s.csv").string() + "' '" + (dir / "s.svg").string() + "'";
@@ -52,9 +55,11 @@ TEST_CASE("plot: a second-order method buys a factor of four", "[curves]") {
   INFO(out.text);
   REQUIRE(out.code == 0);
   CHECK_THAT(out.text, Contains("6 settings, 5 on the Pareto front"));
-  CHECK_THAT(out.text, Contains("A factor of two in time buys 4 times less error on average from 0.8 to 12.8 ms (4 times at the cheap end, 4 times at the dear end)"));
+  CHECK_THAT(out.text, Contains("A factor of two in time buys 4 times less error on average from 0.8 to 12.8 ms (4 "
+                                "times at the cheap end, 4 times at the dear end)"));
   const std::string first = read_file(dir / "s.svg", 1 << 20);
-  CHECK_THAT(first, Contains("software driver") && Contains("640x360") && Contains("d 1") && !Contains("GNUPLOT 5") && Contains("view.steps=8"));
+  CHECK_THAT(first, Contains("software driver") && Contains("640x360") && Contains("d 1") && !Contains("GNUPLOT 5") &&
+                        Contains("view.steps=8"));
   CHECK(first.find("uid=") == std::string::npos);  // text from a file is never run
   REQUIRE(plot(files).code == 0);
   CHECK(read_file(dir / "s.svg", 1 << 20) == first);

@@ -2,7 +2,6 @@
 #include "common/image/exr.hpp"
 
 #include <catch2/catch.hpp>
-
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -23,11 +22,14 @@ Image noise(uint32_t width, uint32_t height) {
   std::uniform_real_distribution<float> exponent(-30.0f, 15.0f);
   Image picture{width, height, {}};
   for (size_t i = 0; i < size_t{width} * height; ++i)
-    picture.pixels.emplace_back(std::exp2(exponent(random)), -std::exp2(exponent(random)), std::exp2(exponent(random)), 0.25f);
+    picture.pixels.emplace_back(std::exp2(exponent(random)), -std::exp2(exponent(random)), std::exp2(exponent(random)),
+                                0.25f);
   return picture;
 }
 
-void put(const std::filesystem::path& file, const std::string& bytes) { std::ofstream(file, std::ios::binary) << bytes; }
+void put(const std::filesystem::path& file, const std::string& bytes) {
+  std::ofstream(file, std::ios::binary) << bytes;
+}
 
 bool survives(const std::filesystem::path& file) {
   try {
@@ -120,7 +122,8 @@ TEST_CASE("EXR: damaged files end in Error or success, nothing else", "[exr]") {
     const std::string good = read_file(dir / "a.exr", 100000);
     for (int round = 0; round < 2000; ++round) {
       std::string bytes = good;
-      const size_t reach = round % 2 == 0 ? bytes.size() : std::min<size_t>(bytes.size(), 400);  // half of them in the header
+      const size_t reach =
+          round % 2 == 0 ? bytes.size() : std::min<size_t>(bytes.size(), 400);  // half of them in the header
       for (size_t i = 0; i < 1 + random() % 4; ++i) bytes[random() % reach] ^= static_cast<char>(1 + random() % 255);
       put(dir / "bad.exr", bytes);
       refused += !survives(dir / "bad.exr");

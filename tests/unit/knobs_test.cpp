@@ -86,8 +86,8 @@ TEST_CASE("a knob accepts its whole range, ends included, and nothing beyond", "
 
 TEST_CASE("what is no finite decimal number is refused", "[knobs]") {
   Settings settings = some();
-  for (const char* text : {"", " ", "nan", "NaN", "-nan", "inf", "-inf", "infinity", "0x10", "1e999", "12 ",
-                           " 12", "1,5", "12km", "++1", "--1", "1e", "."}) {
+  for (const char* text : {"", " ", "nan", "NaN", "-nan", "inf", "-inf", "infinity", "0x10", "1e999", "12 ", " 12",
+                           "1,5", "12km", "++1", "--1", "1e", "."}) {
     INFO("'" << text << "'");
     CHECK_THAT(refused([&] { settings.set("mie.g", text); }),
                Catch::Contains("not a finite number; accepted is a number from -0.999 to 0.999"));
@@ -96,8 +96,7 @@ TEST_CASE("what is no finite decimal number is refused", "[knobs]") {
   }
   for (const double value :
        {std::nan(""), std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()})
-    CHECK_THAT(refused([&] { settings.set_number("mie.g", value); }),
-               Catch::Contains("accepted is a number from"));
+    CHECK_THAT(refused([&] { settings.set_number("mie.g", value); }), Catch::Contains("accepted is a number from"));
   CHECK_FALSE(settings.was_set("mie.g"));
 }
 
@@ -106,13 +105,10 @@ TEST_CASE("a choice is taken by name, and numbers address it within bounds", "[k
   settings.set("rule", "gauss");
   CHECK(settings.choice("rule") == "gauss");
   CHECK(settings.integer("rule") == 2);
-  CHECK(refused([&] { settings.set("rule", "simpson"); }) ==
-        "rule=simpson: accepted is one of left, midpoint, gauss");
+  CHECK(refused([&] { settings.set("rule", "simpson"); }) == "rule=simpson: accepted is one of left, midpoint, gauss");
   CHECK(refused([&] { settings.set("rule", "2"); }) == "rule=2: accepted is one of left, midpoint, gauss");
-  CHECK(refused([&] { settings.set_number("rule", 3); }) ==
-        "rule=3: accepted is one of left, midpoint, gauss");
-  CHECK(refused([&] { settings.set_number("rule", 0.5); }) ==
-        "rule=0.5: accepted is one of left, midpoint, gauss");
+  CHECK(refused([&] { settings.set_number("rule", 3); }) == "rule=3: accepted is one of left, midpoint, gauss");
+  CHECK(refused([&] { settings.set_number("rule", 0.5); }) == "rule=0.5: accepted is one of left, midpoint, gauss");
   CHECK(settings.choice("rule") == "gauss");
 }
 

@@ -2,7 +2,6 @@
 #include "common/measure/metrics.hpp"
 
 #include <catch2/catch.hpp>
-
 #include <cmath>
 #include <limits>
 
@@ -26,11 +25,14 @@ TEST_CASE("ten per cent too bright everywhere scores 0.1", "[metrics]") {
   const Errors e = measure::compare(flat(glm::vec4(1.1f, 1.1f, 1.1f, 0.0f)), flat(glm::vec4(1.0f)), kIdentity);
   CHECK(e.values == 36);
   CHECK(e.finite());
-  for (const double score : {e.relative_rmse, e.max_relative, e.p99_relative, e.mean_bias}) CHECK(score == Approx(0.1).epsilon(1e-6));
+  for (const double score : {e.relative_rmse, e.max_relative, e.p99_relative, e.mean_bias})
+    CHECK(score == Approx(0.1).epsilon(1e-6));
   CHECK(e.rmse_255 == Approx(25.5).epsilon(1e-6));
-  CHECK(measure::compare(flat(glm::vec4(0.9f)), flat(glm::vec4(1.0f)), kIdentity).mean_bias == Approx(-0.1).epsilon(1e-6));
+  CHECK(measure::compare(flat(glm::vec4(0.9f)), flat(glm::vec4(1.0f)), kIdentity).mean_bias ==
+        Approx(-0.1).epsilon(1e-6));
   const Errors same = measure::compare(flat(glm::vec4(0.3f)), flat(glm::vec4(0.3f)), kIdentity);
-  for (const double score : {same.relative_rmse, same.max_relative, same.p99_relative, same.mean_bias, same.rmse_255}) CHECK(score == 0.0);
+  for (const double score : {same.relative_rmse, same.max_relative, same.p99_relative, same.mean_bias, same.rmse_255})
+    CHECK(score == 0.0);
 }
 
 TEST_CASE("relative RMSE, bias and maximum by hand", "[metrics]") {
@@ -49,7 +51,8 @@ TEST_CASE("the scale of radiance does not change a relative score", "[metrics]")
 }
 
 TEST_CASE("near-black values count against a thousandth of the mean", "[metrics]") {
-  CHECK(errors({2.001, 1e-6}, {2.0, 0.0}).max_relative == Approx(1e-3).epsilon(1e-9));       // floor 1e-3: 1e-6 / 1e-3 and 5e-4
+  CHECK(errors({2.001, 1e-6}, {2.0, 0.0}).max_relative ==
+        Approx(1e-3).epsilon(1e-9));                      // floor 1e-3: 1e-6 / 1e-3 and 5e-4
   CHECK(errors({0, 1e-9}, {0, 0}).max_relative == kInf);  // any light where the reference is black throughout
   CHECK(errors({0, 1e-9}, {0, 0}).relative_rmse == kInf);
   CHECK(errors({0, 0}, {0, 0}).relative_rmse == 0.0);
@@ -108,7 +111,8 @@ TEST_CASE("medians and percentiles", "[metrics]") {
   CHECK(std::isnan(median({1, kNan, 2})));
   std::vector<double> ramp;
   for (int i = 100; i >= 0; --i) ramp.push_back(i);
-  for (const double p : {0.0, 0.25, 0.5, 0.99, 0.995, 1.0}) CHECK(percentile(ramp, p) == Approx(100.0 * p).epsilon(1e-12));
+  for (const double p : {0.0, 0.25, 0.5, 0.99, 0.995, 1.0})
+    CHECK(percentile(ramp, p) == Approx(100.0 * p).epsilon(1e-12));
   CHECK(percentile({1, kInf, kInf}, 0.9) == kInf);
   const Spread s = spread({3, 1, 2});
   CHECK((s.median == 2.0 && s.minimum == 1.0 && s.maximum == 3.0 && s.samples == 3));
@@ -117,8 +121,8 @@ TEST_CASE("medians and percentiles", "[metrics]") {
 TEST_CASE("the display transform's known points", "[metrics]") {
   CHECK(image::srgb_encode(0.0f) == 0.0f);
   CHECK(image::srgb_encode(1.0f) == Approx(1.0f).epsilon(1e-6));
-  CHECK(image::srgb_encode(0.2140411f) == Approx(0.5f).epsilon(1e-6));         // IEC 61966-2-1: sRGB 0.5
-  CHECK(image::srgb_encode(0.0031308f) == Approx(0.0404500f).epsilon(1e-4));   // the two branches meet
+  CHECK(image::srgb_encode(0.2140411f) == Approx(0.5f).epsilon(1e-6));        // IEC 61966-2-1: sRGB 0.5
+  CHECK(image::srgb_encode(0.0031308f) == Approx(0.0404500f).epsilon(1e-4));  // the two branches meet
   CHECK(image::display(glm::vec3(std::log(2.0f)), 1.0f).r == Approx(image::srgb_encode(0.5f)).epsilon(1e-6));
   CHECK(image::display(glm::vec3(1e-9f), 1.0f).g == Approx(12.92e-9f).epsilon(1e-5));  // expm1 keeps the dark end
   CHECK(image::quantise(NAN) == 0);

@@ -1,10 +1,10 @@
 // PNG and whole-file writing: round trips, text chunks, and files that are missing, cut short or damaged.
 #include "common/image/png.hpp"
 
-#include <catch2/catch.hpp>
 #include <sys/resource.h>
 #include <sys/stat.h>
 
+#include <catch2/catch.hpp>
 #include <csignal>
 #include <fstream>
 #include <random>
@@ -77,8 +77,10 @@ TEST_CASE("16-bit PNG keeps all sixteen bits", "[png]") {
 
 TEST_CASE("text chunks round trip with line breaks and UTF-8", "[png]") {
   const TemporaryDirectory dir;
-  const std::string scene = "name = \"today\"\n\n[sun]\n\tzenith_deg = 45\n", place = "Pometeno brdo, 43.60° N — Пометено брдо ☀";
-  image::write_png8(dir / "a.png", noise8(3, 2), {{"welkin.scene", scene}, {"place", place}, {"empty", ""}, {"Place", "other"}});
+  const std::string scene = "name = \"today\"\n\n[sun]\n\tzenith_deg = 45\n",
+                    place = "Pometeno brdo, 43.60° N — Пометено брдо ☀";
+  image::write_png8(dir / "a.png", noise8(3, 2),
+                    {{"welkin.scene", scene}, {"place", place}, {"empty", ""}, {"Place", "other"}});
   CHECK(image::read_png_text(dir / "a.png", "welkin.scene") == scene);
   CHECK(image::read_png_text(dir / "a.png", "place") == place);
   CHECK(image::read_png_text(dir / "a.png", "empty") == "");
@@ -89,7 +91,8 @@ TEST_CASE("text chunks round trip with line breaks and UTF-8", "[png]") {
   const std::string most(1 << 20, 'x');
   image::write_png8(dir / "b.png", noise8(1, 1), {{"k", most}});
   CHECK(image::read_png_text(dir / "b.png", "k") == most);
-  for (const auto& [key, text] : image::TextChunks{{"", "t"}, {std::string(80, 'k'), "t"}, {"k\n", "t"}, {"k", most + "x"}, {"k", std::string(3, '\0')}})
+  for (const auto& [key, text] : image::TextChunks{
+           {"", "t"}, {std::string(80, 'k'), "t"}, {"k\n", "t"}, {"k", most + "x"}, {"k", std::string(3, '\0')}})
     CHECK_THROWS_AS(image::write_png8(dir / "c.png", noise8(1, 1), {{key, text}}), Error);
   CHECK_FALSE(fs::exists(dir / "c.png"));
 }
@@ -122,7 +125,16 @@ TEST_CASE("PNG: bad files are named, with what is wrong", "[png]") {
   CHECK_THROWS_WITH(image::read_png8(with_size(3, 0)), Contains("3x0"));
   CHECK_THROWS_WITH(image::read_png8(with_size(16385, 2)), Contains("accepted is 1 to 16384"));
   CHECK_THROWS_WITH(image::read_png8(with_size(0xFFFFFFFF, 0xFFFFFFFF)), Contains("accepted is 1 to 16384"));
-  CHECK_THROWS_WITH(image::read_png8(with_size(16384, 16384)), Contains("bytes of data"));  // 1 GiB promised by 100 bytes
+  CHECK_THROWS_WITH(image::read_png8(with_size(16384, 16384)),
+                    Contains("bytes of data"));  // 1 GiB promised by 100 bytes
+
+  std::string odd = good;  // a chunk of an unknown type with a line break in it, its CRC right
+  odd.replace(odd.find("IDAT"), 4, "A\nAA");
+  const size_t at = odd.find("A\nAA"), length = static_cast<uint8_t>(odd[at - 1]);
+  for (size_t i = 0; i < 4; ++i)
+    odd[at + 4 + length + i] = static_cast<char>(crc_of(odd, at, length + 4) >> (24 - 8 * i));
+  put(dir / "odd.png", odd);
+  CHECK_THROWS_WITH(image::read_png8(dir / "odd.png"), Contains("damaged in the chunk at byte 33"));
 
   CHECK_THROWS_WITH(image::write_png8(dir / "out.png", {0, 0, {}}), Contains("0x0"));
   CHECK_THROWS_WITH(image::write_png8(dir / "out.png", {16385, 1, {}}), Contains("16385x1"));
@@ -179,7 +191,8 @@ TEST_CASE("atomic writing: all or nothing, and no litter", "[atomic_file]") {
   CHECK(read_file(dir / "b", 2) == std::string("\0\xFF", 2));
   CHECK(files() == 2);
 
-  CHECK_THROWS_WITH(write_file_atomically(dir / "no/x", std::string_view("x")), Contains("/no': No such file or directory"));
+  CHECK_THROWS_WITH(write_file_atomically(dir / "no/x", std::string_view("x")),
+                    Contains("/no': No such file or directory"));
   CHECK_THROWS_WITH(write_file_atomically(dir / "a/x", std::string_view("x")), Contains("not a directory"));
   CHECK_THROWS_WITH(write_file_atomically(dir.path, std::string_view("x")), Contains("it is a directory"));
   CHECK_THROWS_WITH(write_file_atomically("/dev/full", std::string_view("x")), Contains("device"));

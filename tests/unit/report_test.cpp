@@ -1,6 +1,5 @@
 // Benchmarks as JSON, ladders, the sweep's table and the comparison report.
 #include <catch2/catch.hpp>
-
 #include <cmath>
 #include <fstream>
 #include <set>
@@ -21,8 +20,21 @@ using Catch::Matchers::Contains;
 namespace {
 
 BenchResult bench(const std::string& chapter) {
-  return {chapter, "sunset", "east", "llvmpipe <x> | \"256\" bits", "Mesa 22.3.6", true, 640, 360, {{"view.steps", "32"}, {"rule", "midpoint"}},
-          {{"sky", {1.5, 1.25, 3.0, 9}}, {"display", {0.25, 0.125, 0.5, 9}}}, {2.0, 1.75, 4.0, 9}, 5'000'000'000, 3, 9, "2026-06-21T10:30:00Z"};
+  return {chapter,
+          "sunset",
+          "east",
+          "llvmpipe <x> | \"256\" bits",
+          "Mesa 22.3.6",
+          true,
+          640,
+          360,
+          {{"view.steps", "32"}, {"rule", "midpoint"}},
+          {{"sky", {1.5, 1.25, 3.0, 9}}, {"display", {0.25, 0.125, 0.5, 9}}},
+          {2.0, 1.75, 4.0, 9},
+          5'000'000'000,
+          3,
+          9,
+          "2026-06-21T10:30:00Z"};
 }
 
 Image flat(float value) { return {8, 5, std::vector<glm::vec4>(40, glm::vec4(value, value, value, 1.0f))}; }
@@ -49,18 +61,23 @@ TEST_CASE("a benchmark comes back from its JSON as it was", "[report]") {
   const BenchResult wrote = bench("05");
   write_bench(dir / "b.json", wrote);
   const BenchResult read = read_bench(dir / "b.json");
-  CHECK((read.chapter == "05" && read.scene == "sunset" && read.view == "east" && read.device == wrote.device && read.driver == wrote.driver));
-  CHECK((read.software && read.width == 640 && read.height == 360 && read.bytes == 5'000'000'000 && read.warmup == 3 && read.repeats == 9));
+  CHECK((read.chapter == "05" && read.scene == "sunset" && read.view == "east" && read.device == wrote.device &&
+         read.driver == wrote.driver));
+  CHECK((read.software && read.width == 640 && read.height == 360 && read.bytes == 5'000'000'000 && read.warmup == 3 &&
+         read.repeats == 9));
   CHECK(read.settings == wrote.settings);
   CHECK(read.date == wrote.date);
   REQUIRE(read.passes.size() == 2);
   CHECK((read.passes[0].name == "sky" && read.passes[1].name == "display"));
-  CHECK((read.passes[0].ms.median == 1.5 && read.passes[0].ms.minimum == 1.25 && read.passes[0].ms.maximum == 3.0 && read.passes[0].ms.samples == 9));
+  CHECK((read.passes[0].ms.median == 1.5 && read.passes[0].ms.minimum == 1.25 && read.passes[0].ms.maximum == 3.0 &&
+         read.passes[0].ms.samples == 9));
   CHECK(read.wall_ms.maximum == 4.0);
   CHECK(gpu_ms(read) == 1.75);
   const std::string text = read_file(dir / "b.json", 10000), table = bench_table(read);
-  for (const char* key : {"\"median_ms\": 1.5", "\"min_ms\": 1.25", "\"max_ms\": 3.0", "\"wall_ms\""}) CHECK_THAT(text, Contains(key));
-  for (const char* part : {"sky", "1.500", "wall time", "GPU total 1.750 ms", "4.66 GiB", "software driver", "640x360"}) CHECK_THAT(table, Contains(part));
+  for (const char* key : {"\"median_ms\": 1.5", "\"min_ms\": 1.25", "\"max_ms\": 3.0", "\"wall_ms\""})
+    CHECK_THAT(text, Contains(key));
+  for (const char* part : {"sky", "1.500", "wall time", "GPU total 1.750 ms", "4.66 GiB", "software driver", "640x360"})
+    CHECK_THAT(table, Contains(part));
 
   for (const char* bad : {"", "{", "[]", "null", "{\"chapter\": 5}", "{\"chapter\": \"05\"}"}) {
     write_file_atomically(dir / "bad.json", std::string_view(bad));
@@ -95,20 +112,26 @@ TEST_CASE("a sweep's table has its columns, its source and no hidden NaN", "[rep
   row.errors.relative_rmse = 0.125;
   SweepRow broken = row;
   broken.errors = measure::compare(std::vector<double>{NAN}, std::vector<double>{1.0});
-  write_sweep_csv(dir / "s.csv", knobs().knobs(), {row, broken}, {"05", "sunset", "GPU, X", "driver 1", true, 640, 360, "view.steps=1024", "2026"});
+  write_sweep_csv(dir / "s.csv", knobs().knobs(), {row, broken},
+                  {"05", "sunset", "GPU, X", "driver 1", true, 640, 360, "view.steps=1024", "2026"});
   const std::string text = read_file(dir / "s.csv", 10000);
-  for (const char* line : {"# device: GPU, X\n", "# driver: driver 1\n", "# software driver: yes\n", "# resolution: 640x360\n", "# reference: view.steps=1024\n"})
+  for (const char* line : {"# device: GPU, X\n", "# driver: driver 1\n", "# software driver: yes\n",
+                           "# resolution: 640x360\n", "# reference: view.steps=1024\n"})
     CHECK_THAT(text, Contains(line));
-  CHECK_THAT(text, Contains("view,knob:view.steps,knob:mie.g,knob:rule,gpu_ms_median,gpu_ms_min,gpu_ms_max,wall_ms,pass_ms:sky,bytes,relative_rmse,"
-                            "max_relative,p99_relative,mean_bias,rmse_255,not_finite\neast,8,0.8,left,1.5,1,2,3,1.25,4096,0.125,0,0,0,0,0\n"));
-  CHECK_THROWS_WITH(read_csv(dir / "s.csv", {}, {"view", "knob:rule"}), Contains(":11:") && Contains("'nan' is not a finite number"));
+  CHECK_THAT(text, Contains("view,knob:view.steps,knob:mie.g,knob:rule,gpu_ms_median,gpu_ms_min,gpu_ms_max,wall_ms,"
+                            "pass_ms:sky,bytes,relative_rmse,"
+                            "max_relative,p99_relative,mean_bias,rmse_255,not_finite\neast,8,0.8,left,1.5,1,2,3,1.25,"
+                            "4096,0.125,0,0,0,0,0\n"));
+  CHECK_THROWS_WITH(read_csv(dir / "s.csv", {}, {"view", "knob:rule"}),
+                    Contains(":11:") && Contains("'nan' is not a finite number"));
 }
 
 TEST_CASE("the colour scale's luminance rises throughout", "[report]") {
   double last = -1.0;
   for (int i = 0; i <= 100; ++i) {
     const auto c = scale_colour(static_cast<float>(i) / 100.0f);
-    const double luminance = 0.2126 * std::pow(c[0] / 255.0, 2.2) + 0.7152 * std::pow(c[1] / 255.0, 2.2) + 0.0722 * std::pow(c[2] / 255.0, 2.2);
+    const double luminance = 0.2126 * std::pow(c[0] / 255.0, 2.2) + 0.7152 * std::pow(c[1] / 255.0, 2.2) +
+                             0.0722 * std::pow(c[2] / 255.0, 2.2);
     CHECK(luminance > last);
     last = luminance;
   }
@@ -125,13 +148,15 @@ TEST_CASE("the side-by-side picture holds A, B and their difference", "[report]"
   b.pixels[10].g = NAN;
   const Image8 out = side_by_side(a, b, 4.6f, 1.0f);
   CHECK((out.width == 32 && out.height == 5 && out.rgba.size() == 640));
-  const auto at = [&](size_t x, size_t y) { return std::vector<int>(&out.rgba[(y * 32 + x) * 4], &out.rgba[(y * 32 + x) * 4] + 3); };
+  const auto at = [&](size_t x, size_t y) {
+    return std::vector<int>(&out.rgba[(y * 32 + x) * 4], &out.rgba[(y * 32 + x) * 4] + 3);
+  };
   const int shown = static_cast<int>(std::lround(255.0 * (1.055 * std::pow(1.0 - std::exp(-2.3), 1 / 2.4) - 0.055)));
   CHECK(at(0, 0) == std::vector<int>(3, shown));
   CHECK(at(12 + 1, 1) == std::vector<int>{0, shown, shown});
-  CHECK(at(8, 2) == std::vector<int>(3, 255));           // the gap
-  CHECK(at(24, 0) == std::vector<int>{68, 1, 84});       // no difference
-  CHECK(at(24 + 2, 1) == std::vector<int>{255, 0, 255}); // not finite
+  CHECK(at(8, 2) == std::vector<int>(3, 255));            // the gap
+  CHECK(at(24, 0) == std::vector<int>{68, 1, 84});        // no difference
+  CHECK(at(24 + 2, 1) == std::vector<int>{255, 0, 255});  // not finite
   const auto expected = scale_colour(static_cast<float>(shown) / 255.0f);
   CHECK(std::abs(at(24 + 1, 1)[1] - int(expected[1])) <= 1);  // the map is made before the picture is rounded to 8 bits
   CHECK(choose_gain(a, a, 4.6f) == 1000.0f);
@@ -147,7 +172,8 @@ TEST_CASE("the report states errors, times, exposure and gain, and stands alone"
   CHECK_THAT(html, Contains("data:image/png;base64,iVBORw0KGgo") && !Contains("<x>") && !Contains("src=\"compare"));
   CHECK_THAT(markdown, Contains("(compare.png)"));
   for (const std::string& page : {html, markdown})
-    CHECK_THAT(page, Contains("0.1") && Contains("1.500") && Contains("4.66 GiB") && Contains("exp(-2.3 L)") && Contains("the truth") && Contains("software driver"));
+    CHECK_THAT(page, Contains("0.1") && Contains("1.500") && Contains("4.66 GiB") && Contains("exp(-2.3 L)") &&
+                         Contains("the truth") && Contains("software driver"));
   try {
     write_comparison(dir / "other", "x", a, {"b", {1, 1, {glm::vec4(1.0f)}}, bench("b")}, std::nullopt);
     FAIL("accepted different sizes");

@@ -48,8 +48,7 @@ TEST_CASE("each refusal names file, line, column and what is accepted", "[scene]
       {kView + "[[fog]]\n",
        "section 'fog' at f:4:3: not known to this build, which knows planet, medium, sun, view, post, "
        "settings"},
-      {"name = \"a b\"\n",
-       "name = 'a b' at f:2:8: accepted is quoted text of 1 to 64 letters, digits, _, - or ."},
+      {"name = \"a b\"\n", "name = 'a b' at f:2:8: accepted is quoted text of 1 to 64 letters, digits, _, - or ."},
       {"name = \"a\\nb\"\n",
        "name = 'a\\x0ab' at f:2:8: accepted is quoted text of 1 to 64 letters, digits, _, - or ."},
       {"x = [[[[[[[[[1]]]]]]]]]\n", "not valid TOML at f:2:13: "},
@@ -57,8 +56,7 @@ TEST_CASE("each refusal names file, line, column and what is accepted", "[scene]
       {"[[[view]]\n", "not valid TOML at f:2:3: this character does not belong here"},
       {"[=]\n", "not valid TOML at f:2:2: this character does not belong here"},
       {"a = \"open", "not valid TOML at f:2:10: "},
-      {"# " + std::string(2000, '.') + "\n",
-       "line too long at f:2:1025: accepted are lines of up to 1024 bytes"},
+      {"# " + std::string(2000, '.') + "\n", "line too long at f:2:1025: accepted are lines of up to 1024 bytes"},
       {"planet = 5\n", "planet = 5 at f:2:10: accepted is a section, [planet]"},
       {"[view]\nname = \"v\"\n", "view = a table at f:2:1: accepted is [[view]], a section for each"},
       {"view = [3]\n", "view = 3 at f:2:9: accepted is [[view]], a section for each"},
@@ -91,10 +89,8 @@ TEST_CASE("each refusal names file, line, column and what is accepted", "[scene]
       {"[[medium]]\n", "no kind in medium at f:2:1: accepted is kind = \"rayleigh\", \"mie\" or \"ozone\""},
       {"[[medium]]\nkind = \"dust\"\n",
        "medium.kind = 'dust' at f:3:8: accepted is one of \"rayleigh\", \"mie\", \"ozone\""},
-      {"[[medium]]\nkind = \"mie\"\n",
-       "no scattering_per_km in medium 'mie' at f:2:1: accepted is 0 to 100 km^-1"},
-      {"[[medium]]\nkind = \"ozone\"\n",
-       "no absorption_per_km in medium 'ozone' at f:2:1: accepted is 0 to 100 km^-1"},
+      {"[[medium]]\nkind = \"mie\"\n", "no scattering_per_km in medium 'mie' at f:2:1: accepted is 0 to 100 km^-1"},
+      {"[[medium]]\nkind = \"ozone\"\n", "no absorption_per_km in medium 'ozone' at f:2:1: accepted is 0 to 100 km^-1"},
       {"[[medium]]\nkind = \"rayleigh\"\ng = 0\n",
        "unknown key 'g' in medium 'rayleigh' at f:4:1: known are kind, scattering_per_km, profile, "
        "scale_height_km, phase"},
@@ -125,10 +121,8 @@ TEST_CASE("each refusal names file, line, column and what is accepted", "[scene]
        "extinction = scattering + absorption, so at least the scattering"},
       {mie + mie, "second medium 'mie' at f:6:8: each kind at most once"},
       // sun
-      {"[sun]\nzenith_deg = 180.5\n",
-       "sun.zenith_deg = 180.5 at f:3:14: accepted is a number from 0 to 180 deg"},
-      {"[sun]\nzenith_deg = \"45\"\n",
-       "sun.zenith_deg = '45' at f:3:14: accepted is a number from 0 to 180 deg"},
+      {"[sun]\nzenith_deg = 180.5\n", "sun.zenith_deg = 180.5 at f:3:14: accepted is a number from 0 to 180 deg"},
+      {"[sun]\nzenith_deg = \"45\"\n", "sun.zenith_deg = '45' at f:3:14: accepted is a number from 0 to 180 deg"},
       {"[sun]\nzenith_deg = 2026-01-01\n",
        "sun.zenith_deg = a date or time at f:3:14: accepted is a number from 0 to 180 deg"},
       {"[sun]\ndisc = 1\n", "sun.disc = 1 at f:3:8: accepted is true or false"},
@@ -163,8 +157,7 @@ TEST_CASE("each refusal names file, line, column and what is accepted", "[scene]
       {kView + "fov_deg = 171\n", "view.fov_deg = 171 at f:4:11: accepted is a number from 1 to 170 deg"},
       {kView + "altitude_km = -0.001\n",
        "view.altitude_km = -0.001 at f:4:15: accepted is a number from 0 to 1e+06 km"},
-      {kView + "elevation_deg = 91\n",
-       "view.elevation_deg = 91 at f:4:17: accepted is a number from -90 to 90 deg"},
+      {kView + "elevation_deg = 91\n", "view.elevation_deg = 91 at f:4:17: accepted is a number from -90 to 90 deg"},
       {kView + "azimuth_deg = 1e9\n",
        "view.azimuth_deg = 1000000000 at f:4:15: accepted is a number from -360 to 360 deg"},
       {kView + "azimuth_deg = 1\nazimuth_from_sun_deg = 1\n",
@@ -203,8 +196,8 @@ TEST_CASE("the version comes first", "[scene]") {
 
 TEST_CASE("a message stays on one line whatever the file and its name contain", "[scene]") {
   const std::string nasty = "a\nb\r\x1b[2J\x7f\u0085\u2028";
-  for (const char* text : {"", "version = 2", "version = 1\n\"k\\ney\" = 1",
-                           "version = 1\nname = \"\\u001b[2J\"", "\x01", "a = \"\n"}) {
+  for (const char* text :
+       {"", "version = 2", "version = 1\n\"k\\ney\" = 1", "version = 1\nname = \"\\u001b[2J\"", "\x01", "a = \"\n"}) {
     const std::string line = refused([&] { welkin::parse_scene(text, nasty); });
     CHECK_THAT(line, Catch::Contains("a\\x0ab\\x0d\\x1b[2J\\x7f"));
     CHECK(line.find("\u2028") == std::string::npos);

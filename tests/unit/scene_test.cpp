@@ -44,16 +44,15 @@ bool same(const Scene& a, const Scene& b) {
     return x.kind == y.kind && x.scattering_per_km == y.scattering_per_km &&
            x.absorption_per_km == y.absorption_per_km && x.profile == y.profile &&
            x.scale_height_km == y.scale_height_km && x.peak_altitude_km == y.peak_altitude_km &&
-           x.half_width_km == y.half_width_km && x.phase == y.phase && x.g == y.g &&
-           x.draine_alpha == y.draine_alpha && x.second_g == y.second_g && x.second_weight == y.second_weight;
+           x.half_width_km == y.half_width_km && x.phase == y.phase && x.g == y.g && x.draine_alpha == y.draine_alpha &&
+           x.second_g == y.second_g && x.second_weight == y.second_weight;
   };
   const auto views = [](const welkin::View& x, const welkin::View& y) {
     return x.name == y.name && x.altitude_km == y.altitude_km && x.azimuth_deg == y.azimuth_deg &&
            x.elevation_deg == y.elevation_deg && x.fov_deg == y.fov_deg;
   };
   return a.name == b.name && a.planet.ground_radius_km == b.planet.ground_radius_km &&
-         a.planet.top_radius_km == b.planet.top_radius_km &&
-         a.planet.ground_albedo == b.planet.ground_albedo &&
+         a.planet.top_radius_km == b.planet.top_radius_km && a.planet.ground_albedo == b.planet.ground_albedo &&
          std::equal(a.media.begin(), a.media.end(), b.media.begin(), b.media.end(), media) &&
          a.sun.zenith_deg == b.sun.zenith_deg && a.sun.azimuth_deg == b.sun.azimuth_deg &&
          a.sun.angular_radius_deg == b.sun.angular_radius_deg && a.sun.irradiance == b.sun.irradiance &&
@@ -110,8 +109,7 @@ TEST_CASE("earth and alien are the planets of the reference tables", "[scene]") 
   CHECK(earth.planet.ground_albedo == glm::dvec3(0.3));
   CHECK(earth.sun.angular_radius_deg == 0.2667);
   CHECK(earth.sun.irradiance == glm::dvec3(1.0));
-  const welkin::Medium &gas = *earth.medium("rayleigh"), &haze = *earth.medium("mie"),
-                       &ozone = *earth.medium("ozone");
+  const welkin::Medium &gas = *earth.medium("rayleigh"), &haze = *earth.medium("mie"), &ozone = *earth.medium("ozone");
   CHECK(gas.scattering_per_km == glm::dvec3(5.802e-3, 13.558e-3, 33.1e-3));
   CHECK(gas.absorption_per_km == glm::dvec3(0.0));
   CHECK(haze.scattering_per_km == glm::dvec3(3.996e-3));
@@ -177,8 +175,7 @@ TEST_CASE("effects follow from what the scene contains", "[scene]") {
 }
 
 TEST_CASE("sun from date and place, and views that follow it", "[scene]") {
-  const std::string sun =
-      "[sun]\nutc = \"2003-10-17T19:30:30\"\nlatitude_deg = 39.742476\nlongitude_deg = -105.1786\n";
+  const std::string sun = "[sun]\nutc = \"2003-10-17T19:30:30\"\nlatitude_deg = 39.742476\nlongitude_deg = -105.1786\n";
   const Scene scene = parse(sun + "[[view]]\nname = \"v\"\nazimuth_from_sun_deg = 200\n");
   CHECK(scene.sun.zenith_deg ==
         Approx(50.12795).margin(0.004));  // NREL's worked example, see tests/data/sun_almanac.csv
@@ -201,27 +198,21 @@ TEST_CASE("views are found by name", "[scene]") {
   const Scene scene = welkin::load_scene("noon", kScenes);
   CHECK(scene.view("").name == "horizon");
   CHECK(scene.view("zenith").elevation_deg == 90);
-  CHECK(refused([&] { scene.view("nadir\n"); }) ==
-        "view 'nadir\\x0a': scene 'noon' has horizon, zenith, airliner");
+  CHECK(refused([&] { scene.view("nadir\n"); }) == "view 'nadir\\x0a': scene 'noon' has horizon, zenith, airliner");
 }
 
 TEST_CASE("files that are no scenes", "[scene]") {
   const TemporaryDirectory directory;
-  const auto load = [&](const fs::path& path) {
-    return refused([&] { welkin::load_scene(path.string(), kScenes); });
-  };
-  CHECK_THAT(load(directory.path / "missing.toml"),
-             Catch::Contains("missing.toml") && Catch::Contains("No such file"));
+  const auto load = [&](const fs::path& path) { return refused([&] { welkin::load_scene(path.string(), kScenes); }); };
+  CHECK_THAT(load(directory.path / "missing.toml"), Catch::Contains("missing.toml") && Catch::Contains("No such file"));
   CHECK_THAT(load(directory.path / "missing.png"), Catch::Contains("missing.png"));
   CHECK_THAT(load(directory.path), Catch::Contains("is a directory"));
   REQUIRE(mkfifo((directory.path / "pipe.toml").c_str(), 0600) == 0);
   CHECK_THAT(load(directory.path / "pipe.toml"),
              Catch::Contains("not a regular file"));  // and does not wait for a writer
   CHECK_THAT(load("/dev/zero"), Catch::Contains("not a regular file"));
-  CHECK_THAT(load(directory.write("empty.toml", "")),
-             Catch::Contains("empty.toml:1:1: a scene says version = 1"));
-  CHECK_THAT(load(directory.write("large.toml", std::string((1 << 20) + 1, '\n'))),
-             Catch::Contains("1048576"));
+  CHECK_THAT(load(directory.write("empty.toml", "")), Catch::Contains("empty.toml:1:1: a scene says version = 1"));
+  CHECK_THAT(load(directory.write("large.toml", std::string((1 << 20) + 1, '\n'))), Catch::Contains("1048576"));
   CHECK_THAT(load(directory.write("binary.toml", std::string("\0\x01\xff\xfe", 4))),
              Catch::Contains("not valid TOML at") && Catch::Contains("binary.toml:1:"));
   CHECK_THAT(load(directory.write("garbage.png", "not a picture")), Catch::Contains("garbage.png"));
@@ -231,8 +222,7 @@ TEST_CASE("files that are no scenes", "[scene]") {
         "unknown scene 'mars': known are alien, earth, noon, orbit, sunset, today, twilight; a file's name "
         "ends in .toml or .png");
   CHECK_THAT(load(""), Catch::StartsWith("no scene named: known are alien, earth"));
-  CHECK_THAT(refused([&] { welkin::load_scene("earth", directory.path / "none"); }),
-             Catch::Contains("known are none"));
+  CHECK_THAT(refused([&] { welkin::load_scene("earth", directory.path / "none"); }), Catch::Contains("known are none"));
 }
 
 TEST_CASE("a scene cut off anywhere is either whole or refused", "[scene]") {
@@ -258,8 +248,7 @@ TEST_CASE("a picture restores the scene it carries", "[scene]") {
              Catch::StartsWith("version 3 at ") &&
                  Catch::Contains("shot.png (embedded scene):1:11: this build knows version 1"));
   welkin::image::write_png8(file, picture);
-  CHECK_THAT(refused([&] { welkin::load_scene(file.string(), kScenes); }),
-             Catch::Contains("carries no scene"));
+  CHECK_THAT(refused([&] { welkin::load_scene(file.string(), kScenes); }), Catch::Contains("carries no scene"));
 }
 
 TEST_CASE("the example in docs/scenes.md is a scene", "[scene]") {

@@ -70,8 +70,7 @@ TEST_CASE("at the subsolar point the sun is overhead, opposite it underfoot", "[
   // The subsolar point is found from the angles alone: the pole's zenith distance is 90 - declination (+
   // parallax), and on the equator at longitude 0 hour angle follows from the horizontal coordinates (azimuth,
   // zenith).
-  for (const char* utc :
-       {"2026-06-21T10:30:00", "2001-01-01T00:00:00", "2099-12-31T23:59:59", "1900-01-01T00:00:00"}) {
+  for (const char* utc : {"2026-06-21T10:30:00", "2001-01-01T00:00:00", "2099-12-31T23:59:59", "1900-01-01T00:00:00"}) {
     INFO(utc);
     const double parallax = 0.00244;  // 8.794 arc seconds
     const SunAngles pole = sun_angles(utc, 90, 0);
@@ -107,18 +106,15 @@ TEST_CASE("the sun moves 15 degrees an hour, smoothly over midnight, leap second
   CHECK(step("2016-12-31T23:59:59", "2017-01-01T00:00:00", 43.6) > 0.003);
   CHECK(step("1959-12-31T23:59:59", "1960-01-01T00:00:00", 43.6) < 0.009);
   // Places side by side see the sun side by side, across the date line and next to the pole.
-  CHECK(separation_deg(sun_angles("2026-05-01T12:00", 43.6, -180),
-                       sun_angles("2026-05-01T12:00", 43.6, 180)) < 1e-9);
-  CHECK(separation_deg(sun_angles("2026-05-01T12:00", 90, 30), sun_angles("2026-05-01T12:00", 89.9999, 30)) <
-        2e-4);
+  CHECK(separation_deg(sun_angles("2026-05-01T12:00", 43.6, -180), sun_angles("2026-05-01T12:00", 43.6, 180)) < 1e-9);
+  CHECK(separation_deg(sun_angles("2026-05-01T12:00", 90, 30), sun_angles("2026-05-01T12:00", 89.9999, 30)) < 2e-4);
 }
 
 TEST_CASE("text of the date: what is read and what is refused", "[sun]") {
   const SunAngles exact = sun_angles("2026-06-21T10:30:00", 43.6, 16.47);
   for (const char* same : {"2026-06-21T10:30", "2026-06-21T10:30Z", "2026-06-21T10:30:00.000Z"})
     CHECK(sun_angles(same, 43.6, 16.47).zenith_deg == exact.zenith_deg);
-  CHECK(sun_angles("2026-06-21T10:30:00", 43.6, 16.47 - 360).zenith_deg ==
-        Approx(exact.zenith_deg).margin(1e-9));
+  CHECK(sun_angles("2026-06-21T10:30:00", 43.6, 16.47 - 360).zenith_deg == Approx(exact.zenith_deg).margin(1e-9));
   CHECK(sun_angles("2024-02-29T00:00:00", 0, 0).zenith_deg > 90);
 
   for (const char* utc : {"",
@@ -146,12 +142,10 @@ TEST_CASE("text of the date: what is read and what is refused", "[sun]") {
                           "2026-06-21T10:30:00.",
                           "-026-06-21T10:30"}) {
     INFO(utc);
-    CHECK_THAT(refused(utc),
-               Catch::StartsWith("utc '") && Catch::Contains("accepted is YYYY-MM-DDThh:mm[:ss]"));
+    CHECK_THAT(refused(utc), Catch::StartsWith("utc '") && Catch::Contains("accepted is YYYY-MM-DDThh:mm[:ss]"));
   }
-  CHECK(
-      refused("now\n") ==
-      "utc 'now\\x0a': accepted is YYYY-MM-DDThh:mm[:ss] in UTC from 1900 to 2100, now, or today hh:mm[:ss]");
+  CHECK(refused("now\n") ==
+        "utc 'now\\x0a': accepted is YYYY-MM-DDThh:mm[:ss] in UTC from 1900 to 2100, now, or today hh:mm[:ss]");
   CHECK(refused("now", 90.1) == "latitude_deg = 90.1: accepted is -90 to 90 deg");
   CHECK(refused("now", 0, 361) == "longitude_deg = 361: accepted is -360 to 360 deg");
   CHECK(refused("now", NAN) == "latitude_deg = nan: accepted is -90 to 90 deg");
@@ -162,8 +156,7 @@ TEST_CASE("now and today are the present date in UTC, in any time zone", "[sun]"
   setenv("TZ", "Pacific/Kiritimati", 1);
   const SunAngles far_east = here("now");
   setenv("TZ", "UTC", 1);
-  CHECK(separation_deg(far_east, here("now")) <
-        0.1);  // the calls are well under 24 s apart: 0.1 deg of hour angle
+  CHECK(separation_deg(far_east, here("now")) < 0.1);  // the calls are well under 24 s apart: 0.1 deg of hour angle
   CHECK(separation_deg(here("today"), here("now")) < 0.1);
   // "today 14:00" differs from the same hour of another date by the season only, never by the hour of day.
   CHECK(here("today 14:00").azimuth_deg > 215);  // between south-west and west all year at 43.6 N, 16.47 E
@@ -178,9 +171,7 @@ TEST_CASE("the afternoon of scene 'today' is day on every day of the year", "[su
 
 TEST_CASE("the sun's angles are the same from many threads", "[sun]") {
   std::vector<double> alone, together(64);
-  const auto at = [](int i) {
-    return sun_angles(fmt::format("20{:02}-05-05T05:05:05", i), i, 2.0 * i).azimuth_deg;
-  };
+  const auto at = [](int i) { return sun_angles(fmt::format("20{:02}-05-05T05:05:05", i), i, 2.0 * i).azimuth_deg; };
   for (int i = 0; i < 64; ++i) alone.push_back(at(i));
   std::vector<std::thread> threads;
   for (int t = 0; t < 4; ++t)

@@ -11,7 +11,8 @@ struct TemporaryDirectory {
   std::filesystem::path path;
   TemporaryDirectory() {
     static std::atomic<int> count{0};
-    path = std::filesystem::temp_directory_path() / ("welkin-test-" + std::to_string(::getpid()) + "-" + std::to_string(count++));
+    path = std::filesystem::temp_directory_path() /
+           ("welkin-test-" + std::to_string(::getpid()) + "-" + std::to_string(count++));
     std::filesystem::create_directories(path);
   }
   TemporaryDirectory(const TemporaryDirectory&) = delete;

@@ -1,9 +1,9 @@
 // The present pass. See present.hpp.
-#include "common/app/present.hpp"
+#include "chapters/02_window/present.hpp"
 
 #include <array>
 
-namespace welkin::app {
+namespace welkin {
 namespace {
 
 constexpr gpu::Use kFragmentRead{VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT, VK_IMAGE_LAYOUT_GENERAL};
@@ -19,8 +19,8 @@ PresentPass::PresentPass(const gpu::Device& device, VkFormat format)
     : set_layout_(gpu::create_set_layout(device, kBindings)),
       layout_(gpu::create_pipeline_layout(device, set_layout_, VK_SHADER_STAGE_FRAGMENT_BIT, 0)),
       set_(gpu::create_descriptor_set(device, set_layout_, kBindings)) {
-  const gpu::ShaderModule vertex = gpu::create_shader_module(device, "app/present.vert");
-  const gpu::ShaderModule fragment = gpu::create_shader_module(device, "app/present.frag");
+  const gpu::ShaderModule vertex = gpu::create_shader_module(device, "02_window/present.vert");
+  const gpu::ShaderModule fragment = gpu::create_shader_module(device, "02_window/present.frag");
   const std::array<VkPipelineShaderStageCreateInfo, 2> stages{
       VkPipelineShaderStageCreateInfo{.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO, .stage = VK_SHADER_STAGE_VERTEX_BIT, .module = vertex, .pName = "main"},
       VkPipelineShaderStageCreateInfo{.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO, .stage = VK_SHADER_STAGE_FRAGMENT_BIT, .module = fragment, .pName = "main"}};
@@ -75,4 +75,4 @@ void PresentPass::record(VkCommandBuffer commands, const gpu::Image& displayed, 
 }
 // [/record]
 
-}  // namespace welkin::app
+}  // namespace welkin

@@ -7,7 +7,7 @@
 #include "common/gpu/commands.hpp"
 #include "common/gpu/timer.hpp"
 
-namespace welkin::app {
+namespace welkin {
 
 inline constexpr uint32_t kFramesInFlight = 2;
 
@@ -59,4 +59,4 @@ class WindowSwapchain {
   uint32_t next_slot_ = 0;
 };
 
-}  // namespace welkin::app
+}  // namespace welkin

@@ -1,5 +1,5 @@
-// The window: GLFW, input, and the loop that draws frames until it is closed. See window.hpp.
-#include "common/app/window.hpp"
+// The window. See window.hpp and docs/chapters/02_window.md.
+#include "chapters/02_window/window.hpp"
 
 #define GLFW_INCLUDE_NONE
 #include <vulkan/vulkan.h>
@@ -13,14 +13,16 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "common/app/panel.hpp"
-#include "common/app/present.hpp"
+#include "chapters/02_window/panel.hpp"
+#include "chapters/02_window/present.hpp"
 #include "common/app/session.hpp"
 #include "common/gpu/shader_file.hpp"
 #include "common/scene/scene_knobs.hpp"
 
-namespace welkin::app {
+namespace welkin {
 namespace {
+
+using namespace app;
 
 constexpr VkExtent2D kSoftwareSize{640, 360};  // what a software driver draws a few times a second
 
@@ -211,23 +213,6 @@ bool Loop::draw(uint32_t index) {
   return swapchain.end_frame(*slot, image);
 }
 
-}  // namespace
-
-WindowLibrary::WindowLibrary() {
-  if (glfwInit() != GLFW_TRUE) fail("cannot open the display: {}; unset DISPLAY or use --headless to draw into a file", last_glfw_error());
-  watch_display();
-  if (glfwVulkanSupported() != GLFW_TRUE) fail("the window library finds no Vulkan loader for windows ({}); use --headless", last_glfw_error());
-}
-
-WindowLibrary::~WindowLibrary() { glfwTerminate(); }
-
-std::vector<const char*> WindowLibrary::vulkan_extensions() const {
-  uint32_t count = 0;
-  const char** names = glfwGetRequiredInstanceExtensions(&count);
-  if (names == nullptr) fail("this display offers no Vulkan surface ({}); use --headless", last_glfw_error());
-  return {names, names + count};
-}
-
 Exit run_window(Session& session) {
   const VkExtent2D wanted = session.options.size_given || !session.device.candidate().software ? session.options.size : kSoftwareSize;
   Window window;
@@ -270,4 +255,28 @@ Exit run_window(Session& session) {
   return Exit::ok;
 }
 
-}  // namespace welkin::app
+// Initialised first and terminated last: it outlives the instance and everything made from it.
+class GlfwWindowSystem : public app::WindowSystem {
+ public:
+  GlfwWindowSystem() {
+    if (glfwInit() != GLFW_TRUE) fail("cannot open the display: {}; unset DISPLAY or use --headless to draw into a file", last_glfw_error());
+    watch_display();
+    if (glfwVulkanSupported() != GLFW_TRUE) fail("the window library finds no Vulkan loader for windows ({}); use --headless", last_glfw_error());
+  }
+  ~GlfwWindowSystem() override { glfwTerminate(); }
+
+  std::vector<const char*> vulkan_extensions() const override {
+    uint32_t count = 0;
+    const char** names = glfwGetRequiredInstanceExtensions(&count);
+    if (names == nullptr) fail("this display offers no Vulkan surface ({}); use --headless", last_glfw_error());
+    return {names, names + count};
+  }
+
+  Exit show(Session& session) override { return run_window(session); }
+};
+
+}  // namespace
+
+std::unique_ptr<app::WindowSystem> open_window_system() { return std::make_unique<GlfwWindowSystem>(); }
+
+}  // namespace welkin

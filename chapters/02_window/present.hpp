@@ -4,7 +4,7 @@
 #include "common/gpu/commands.hpp"
 #include "common/gpu/pipeline.hpp"
 
-namespace welkin::app {
+namespace welkin {
 
 class PresentPass {
  public:
@@ -20,4 +20,4 @@ class PresentPass {
   gpu::DescriptorSet set_;
 };
 
-}  // namespace welkin::app
+}  // namespace welkin

@@ -1,5 +1,5 @@
 // The panel, with Dear ImGui 1.86 on its GLFW and Vulkan backends. See panel.hpp.
-#include "common/app/panel.hpp"
+#include "chapters/02_window/panel.hpp"
 
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_vulkan.h>
@@ -9,7 +9,7 @@
 
 #include "common/measure/bench_json.hpp"
 
-namespace welkin::app {
+namespace welkin {
 namespace {
 
 constexpr size_t kHistory = 120;
@@ -151,7 +151,7 @@ void Panel::layout(const Chapter& chapter, const Scene& scene, Settings& setting
     ImGui::TextWrapped("%s", chapter.whats_new.c_str());
     ImGui::TextDisabled(state.flying ? "F: back to the panel" : "F: fly (WASD, Space, Ctrl, Shift, mouse)");
     ImGui::TextDisabled("R reload shaders  P screenshot  H hide  Esc quit");
-    ImGui::Text("altitude %.4g km, azimuth %.1f, elevation %.1f", altitude_km(pose, scene.planet.ground_radius_km), pose.azimuth_deg, pose.elevation_deg);
+    ImGui::Text("altitude %.4g km, azimuth %.1f, elevation %.1f", app::altitude_km(pose, scene.planet.ground_radius_km), pose.azimuth_deg, pose.elevation_deg);
     if (!settings.knobs().empty() && ImGui::CollapsingHeader("Knobs", ImGuiTreeNodeFlags_DefaultOpen))
       for (const Knob& knob : settings.knobs())
         if (knob_widget(knob, settings)) state.changed.push_back(knob.name);
@@ -185,4 +185,4 @@ void Panel::record(VkCommandBuffer commands, uint32_t image_index) {
   vkCmdEndRenderPass(commands);
 }
 
-}  // namespace welkin::app
+}  // namespace welkin

@@ -1,9 +1,9 @@
 // Swapchain and frames in flight. See swapchain.hpp.
-#include "common/app/swapchain.hpp"
+#include "chapters/02_window/swapchain.hpp"
 
 #include <algorithm>
 
-namespace welkin::app {
+namespace welkin {
 namespace {
 
 gpu::Semaphore create_semaphore(const gpu::Device& device, VkSemaphoreType type) {
@@ -153,4 +153,4 @@ bool WindowSwapchain::end_frame(FrameSlot& slot, uint32_t image_index) {
 }
 // [/end_frame]
 
-}  // namespace welkin::app
+}  // namespace welkin

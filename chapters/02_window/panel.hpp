@@ -8,11 +8,15 @@
 
 #include "common/app/camera.hpp"
 #include "common/app/chapter.hpp"
-#include "common/app/swapchain.hpp"
+#include "chapters/02_window/swapchain.hpp"
 
 struct GLFWwindow;
 
-namespace welkin::app {
+namespace welkin {
+
+using app::CameraPose;
+using app::Chapter;
+
 
 // What the panel shows and what the user did with it.
 struct PanelState {
@@ -46,4 +50,4 @@ class Panel {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace welkin::app
+}  // namespace welkin

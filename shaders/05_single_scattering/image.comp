@@ -1,0 +1,29 @@
+// One camera ray per pixel through single_scattering(), and the sun's disc behind the air.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 8, local_size_y = 8) in;
+#include "interop/camera.h"
+#include "03_planet_and_rays/camera.glsl"
+#include "05_single_scattering/sky.glsl"
+
+layout(binding = 1, rgba32f) uniform writeonly image2D target;
+layout(push_constant) uniform Push {
+  CameraRays camera;
+  ivec4 steps;  // x: view, y: light
+};
+
+// [image]
+void main() {
+  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, camera.size.xy))) return;
+  const vec3 view = camera_direction(camera, pixel);
+  const vec3 sun = camera.sun.xyz;
+  const float altitude_km = camera.right.w;
+
+  const RayLight sky = single_scattering(atmosphere, altitude_km, view, sun, steps.x, steps.y, RULE);
+  vec3 radiance = sky.radiance;
+  if (SUN_DISC && !enter_air(atmosphere, altitude_km, view, sun).hits_ground)
+    radiance += sky.transmittance * sun_disc_radiance(atmosphere.sun.xyz, atmosphere.shape.w, one_minus_cosine(view, sun));
+  imageStore(target, pixel, vec4(radiance, 1.0));
+}
+// [/image]

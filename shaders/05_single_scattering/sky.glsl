@@ -1,0 +1,22 @@
+// What the entry points of chapter 05 share: the effects compiled in, the atmosphere, and one ray's light.
+#ifndef WELKIN_SKY_GLSL
+#define WELKIN_SKY_GLSL
+
+// [variant]
+// What the scene lacks is not there: these are known when the pipeline is made, and the compiler drops the rest.
+layout(constant_id = 0) const bool HAS_RAYLEIGH = true;
+layout(constant_id = 1) const bool HAS_MIE = true;
+layout(constant_id = 2) const bool HAS_OZONE = true;
+layout(constant_id = 3) const int MIE_PHASE = 1;
+layout(constant_id = 4) const bool SUN_DISC = true;
+layout(constant_id = 5) const int RULE = 5;
+// [/variant]
+
+#include "05_single_scattering/single_scattering.glsl"
+#include "05_single_scattering/sun_disc.glsl"
+
+layout(binding = 0, std140) uniform Air {
+  Atmosphere atmosphere;
+};
+
+#endif

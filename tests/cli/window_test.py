@@ -1,0 +1,158 @@
+"""A real window under Xvfb with real keys, mouse and resizes: what it shows is what a headless run writes."""
+import os
+import shutil
+import subprocess
+import time
+import unittest
+
+from welkin_case import BUILD, ROOT, WelkinCase, read_png, rgb
+
+TOOLS = ("Xvfb", "xdotool", "import", "convert")
+
+
+@unittest.skipIf(any(shutil.which(tool) is None for tool in TOOLS), "needs " + ", ".join(TOOLS))
+class Window(WelkinCase):
+    def setUp(self):
+        super().setUp()
+        read, write = os.pipe()
+        self.server = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", "1000x700x24"], pass_fds=[write],
+                                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        os.close(write)
+        with os.fdopen(read) as pipe:
+            self.display = ":" + pipe.readline().strip()
+        self.addCleanup(self.server.wait)
+        self.addCleanup(self.server.kill)
+        self.program = None
+
+    def open(self, chapter="02_window", *arguments, **environment):
+        self.errors = open(self.directory / "stderr.txt", "w+")
+        self.addCleanup(self.errors.close)
+        self.program = subprocess.Popen([BUILD / "bin" / chapter, *arguments], cwd=self.directory, text=True,
+                                        env={**os.environ, "DISPLAY": self.display, **environment},
+                                        stdout=subprocess.PIPE, stderr=self.errors)
+        self.addCleanup(self.program.stdout.close)
+        self.addCleanup(self.program.wait)
+        self.addCleanup(self.program.kill)
+        self.assertIn("window on", self.program.stdout.readline(), self.error_text())
+        self.window = self.xdotool("search", "--sync", "--onlyvisible", "--name", "Welkin").split()[0]
+        self.xdotool("windowfocus", self.window)
+        time.sleep(0.5)
+
+    def error_text(self):
+        self.errors.seek(0)
+        return self.errors.read()
+
+    def xdotool(self, *arguments):
+        return subprocess.run(["xdotool", *arguments], env={**os.environ, "DISPLAY": self.display}, text=True,
+                              capture_output=True, timeout=30, check=True).stdout
+
+    def key(self, name):
+        self.xdotool("key", "--window", self.window, name)
+        time.sleep(0.5)
+
+    def screen(self, name):
+        """The window as the display shows it, taken by another program."""
+        path = self.directory / name
+        subprocess.run(["import", "-window", self.window, "-depth", "8", "-type", "TrueColor", "-define", "png:color-type=2", path],
+                       env={**os.environ, "DISPLAY": self.display}, check=True, timeout=30)
+        return read_png(path)
+
+    def saved(self):
+        """Presses the screenshot key and returns the file the program says it wrote."""
+        self.key("p")
+        line = self.program.stdout.readline()
+        self.assertIn("saved out/", line)
+        return self.directory / line.split()[1]
+
+    def quit(self, code=0):
+        self.key("Escape")
+        self.assertEqual(self.program.wait(timeout=30), code, self.error_text())
+
+    def headless(self, *arguments):
+        self.run_chapter("02", "--headless", "--output", "headless.png", *arguments)
+        return rgb(read_png(self.directory / "headless.png"))
+
+    def test_window_shows_the_headless_bits(self):
+        self.open("02_window", "--size", "401x299", "--validation", "sync")
+        self.assertNotEqual(rgb(self.screen("panel.png")), self.headless("--size", "401x299"), "the panel is drawn")
+        self.key("h")
+        self.assertEqual(rgb(self.screen("screen.png")), self.headless("--size", "401x299"))
+        self.assertEqual(rgb(read_png(self.saved())), self.headless("--size", "401x299"))
+        self.quit()
+
+    def test_resize_follows(self):
+        self.open("02_window", "--size", "320x200", "--validation", "sync")
+        for width, height in ((500, 333), (64, 48), (640, 360)):
+            self.xdotool("windowsize", "--sync", self.window, str(width), str(height))
+            time.sleep(0.7)
+        self.key("h")
+        self.assertEqual(rgb(self.screen("screen.png")), self.headless("--size", "640x360"))
+        self.assertEqual(read_png(self.saved())[:2], (640, 360))
+        self.quit()
+
+    def test_hidden_and_shown_again(self):
+        self.open("02_window", "--size", "320x200", "--validation", "sync")
+        self.xdotool("windowunmap", "--sync", self.window)
+        time.sleep(0.5)
+        self.assertIsNone(self.program.poll(), self.error_text())
+        self.xdotool("windowmap", "--sync", self.window)
+        time.sleep(0.5)
+        self.xdotool("windowfocus", self.window)
+        self.key("h")
+        self.assertEqual(rgb(self.screen("screen.png")), self.headless("--size", "320x200"))
+        self.quit()
+
+    def test_flying_moves_the_camera_and_a_picture_restores_it(self):
+        self.open("05_single_scattering", "--size", "160x90", "--scene", "noon", "--set", "view.steps=8", "--validation", "sync")
+        before = self.saved()
+        self.key("f")
+        self.xdotool("keydown", "--window", self.window, "w")
+        time.sleep(1.0)
+        self.xdotool("keyup", "--window", self.window, "w")
+        self.xdotool("mousemove_relative", "--", "60", "-25")
+        time.sleep(0.7)
+        after = self.saved()
+        self.quit()
+        self.assertNotEqual(rgb(read_png(before)), rgb(read_png(after)), "the camera turned")
+        self.run_chapter("05", "--headless", "--size", "160x90", "--scene", after, "--output", "again.png")
+        again = rgb(read_png(self.directory / "again.png"))
+        wanted = rgb(read_png(after))
+        # The restored camera went through decimal text: the same to one level of 255.
+        worst = max(abs(a - b) for x, y in zip(again, wanted) for a, b in zip(x, y))
+        self.assertLessEqual(worst, 1)
+
+    def test_a_broken_shader_leaves_the_old_one_running(self):
+        source = self.directory / "source"
+        shutil.copytree(ROOT / "shaders", source / "shaders")
+        shutil.copytree(ROOT / "chapters" / "scenes", source / "chapters" / "scenes")
+        compiled = self.directory / "compiled"
+        shutil.copytree(BUILD / "shaders", compiled)
+        self.open("02_window", "--size", "320x200", WELKIN_SOURCE=str(source), WELKIN_SHADERS=str(compiled))
+        shader = source / "shaders" / "01_first_light" / "first_light.comp"
+        good = shader.read_text()
+        shader.write_text(good.replace("void main()", "void main("))
+        self.key("h")
+        wanted = rgb(self.screen("one.png"))
+        self.key("r")
+        time.sleep(4)
+        self.assertEqual(rgb(self.screen("two.png")), wanted, "the old pipeline stays")
+        shader.write_text(good.replace("vec3(level)", "vec3(255 - level)"))
+        self.key("r")
+        time.sleep(4)
+        inverted = rgb(self.screen("three.png"))
+        self.assertEqual(inverted, [bytes(255 - value for value in row) for row in wanted], "the new one is in use")
+        self.quit()
+
+    def test_lost_display_is_said(self):
+        self.open("02_window", "--size", "320x200")
+        self.server.kill()
+        self.assertEqual(self.program.wait(timeout=30), 2)
+        self.assertIn("display was lost", self.error_text())
+
+    def test_dead_display_is_refused(self):
+        done = self.run_chapter("02", DISPLAY=":4711")
+        self.assert_refused(done, "display", "--headless")
+
+
+if __name__ == "__main__":
+    unittest.main()

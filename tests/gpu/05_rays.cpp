@@ -1,0 +1,162 @@
+// See 05_rays.hpp.
+#include "tests/gpu/05_rays.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+#include "tests/gpu/harness.hpp"
+
+namespace welkin::test {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+void set(float (&to)[4], const reference::Rgb& rgb, double w) {
+  for (int i = 0; i < 3; ++i) to[i] = static_cast<float>(rgb[i]);
+  to[3] = static_cast<float>(w);
+}
+
+// Zenith angles that see the whole sky of a camera: dense at the horizon; from space, by the altitude of the tangent point.
+std::vector<double> views_of(const reference::Planet& planet, double altitude_km) {
+  std::vector<double> zenith_deg;
+  for (int i = 0; i < 60; ++i) {
+    if (altitude_km <= planet.top_radius_km - planet.ground_radius_km) {
+      zenith_deg.push_back(i < 30 ? 3.05 * i : 88.6 + 0.4 * (i - 30));
+    } else {
+      const double closest_km = std::max(planet.ground_radius_km + (i < 40 ? 2.5 * i - 2.0 : -5.0 - 300.0 * (i - 40)), 0.0);
+      zenith_deg.push_back(180.0 - std::asin(std::min(closest_km / (planet.ground_radius_km + altitude_km), 1.0)) * 180.0 / kPi);
+    }
+  }
+  return zenith_deg;
+}
+
+}  // namespace
+
+SkyRay enter_in_double(const reference::Planet& planet, const SkyRay& ray) {
+  const double top_km = planet.top_radius_km - planet.ground_radius_km;
+  if (ray.altitude_km <= top_km) return ray;
+  const double sine = std::hypot(ray.view[0], ray.view[1]);
+  const double closest_km = (planet.ground_radius_km + ray.altitude_km) * sine;
+  if (ray.view[2] >= 0.0 || closest_km >= planet.top_radius_km) return {top_km, {0.0, 0.0, 1.0}, ray.sun};
+  const double entry_sine = closest_km / planet.top_radius_km;
+  const double entry_mu = -std::sqrt((1.0 - entry_sine) * (1.0 + entry_sine));
+  // Rotation in the vertical plane of the view by zenith angle at entry minus zenith angle at the camera.
+  const double c = ray.view[2] * entry_mu + sine * entry_sine;
+  const double s = ray.view[2] * entry_sine - sine * entry_mu;
+  const double x = sine > 0.0 ? ray.view[0] / sine : 1.0;
+  const double y = sine > 0.0 ? ray.view[1] / sine : 0.0;
+  const double along = ray.sun[0] * x + ray.sun[1] * y;
+  const double turned = c * along + s * ray.sun[2];
+  return {top_km,
+          {entry_sine * x, entry_sine * y, entry_mu},
+          {ray.sun[0] + (turned - along) * x, ray.sun[1] + (turned - along) * y, c * ray.sun[2] - s * along}};
+}
+
+RayItem ray_item(const reference::Planet& planet, const SkyRay& camera_ray, const March& march) {
+  const SkyRay ray = march.enter_in_double ? enter_in_double(planet, camera_ray) : camera_ray;
+  RayItem item{};
+  set(item.rayleigh, planet.rayleigh_scattering_per_km, planet.rayleigh_scale_height_km);
+  set(item.mie_scattering, planet.mie_scattering_per_km, planet.mie_scale_height_km);
+  set(item.mie_extinction, planet.mie_extinction_per_km, march.g);
+  set(item.ozone, planet.ozone_absorption_per_km, planet.ozone_peak_km);
+  set(item.shape, {planet.ground_radius_km, planet.top_radius_km - planet.ground_radius_km, planet.ozone_half_width_km}, 0.00465);
+  set(item.ground, {march.albedo, march.albedo, march.albedo}, 0.0);
+  set(item.sun_irradiance, {1.0, 1.0, 1.0}, 0.0);
+  set(item.view, ray.view, ray.altitude_km);
+  set(item.sun, ray.sun, 0.0);
+  set(item.steps, {double(march.view_steps), double(march.light_steps), 0.0}, 0.0);
+  return item;
+}
+
+std::vector<Light> march_items(std::span<const RayItem> items, const March& march) {
+  constexpr size_t kBatch = 1 << 18;  // 42 MB: a third of the smallest limit on a storage buffer
+  constexpr size_t kFloats = sizeof(RayItem) / sizeof(float);
+  std::vector<Light> lights;
+  lights.reserve(items.size());
+  for (size_t first = 0; first < items.size(); first += kBatch) {
+    const size_t count = std::min(kBatch, items.size() - first);
+    std::vector<float> inputs(count * kFloats);
+    std::memcpy(inputs.data(), items.data() + first, count * sizeof(RayItem));
+    const std::vector<float> outputs =
+        evaluate("tests/05_ray.comp", inputs, kFloats, 6,
+                 {march.rayleigh, march.mie, march.ozone, static_cast<uint32_t>(march.phase), static_cast<uint32_t>(march.rule)});
+    for (size_t i = 0; i < count; ++i) {
+      const float* out = outputs.data() + 6 * i;
+      lights.push_back({{out[0], out[1], out[2]}, {out[3], out[4], out[5]}});
+    }
+  }
+  return lights;
+}
+
+std::vector<Light> march_rays(const reference::Planet& planet, std::span<const SkyRay> rays, const March& march) {
+  std::vector<RayItem> items;
+  items.reserve(rays.size());
+  for (const SkyRay& ray : rays) items.push_back(ray_item(planet, ray, march));
+  return march_items(items, march);
+}
+
+SkyRay ray_from_degrees(double altitude_km, double view_zenith_deg, double sun_zenith_deg, double azimuth_deg) {
+  return {altitude_km, reference::direction_from_degrees(view_zenith_deg, 0.0),
+          reference::direction_from_degrees(sun_zenith_deg, azimuth_deg)};
+}
+
+std::vector<TruthRow> truth_rows(const std::string& file, const reference::Planet& planet) {
+  std::ifstream stream(std::string(WELKIN_TEST_DATA) + "/" + file);
+  if (!stream) throw std::runtime_error("cannot read tests/data/" + file);
+  std::vector<TruthRow> rows;
+  bool header = true;
+  for (std::string line; std::getline(stream, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    if (std::exchange(header, false)) continue;
+    std::vector<double> v;
+    std::stringstream fields(line);
+    for (std::string field; std::getline(fields, field, ',');) v.push_back(v.size() == 4 ? 0.0 : std::stod(field));
+    if (v.size() != 26) throw std::runtime_error(file + ": a row without 26 fields");
+    const auto rgb = [&](size_t i) { return reference::Rgb{v[i], v[i + 1], v[i + 2]}; };
+    rows.push_back({v[1], v[2], v[3], ray_from_degrees(v[0], v[1], v[2], v[3]), rgb(13), rgb(16), rgb(19), rgb(22)});
+  }
+
+  std::map<std::pair<double, double>, double> maximum;  // of a camera's altitude and the sun's zenith angle
+  for (const TruthRow& row : rows) {
+    double& most = maximum[{row.ray.altitude_km, row.sun_zenith_deg}];
+    for (double value : row.henyey_greenstein) most = std::max(most, value);
+  }
+  std::vector<SkyRay> grid;
+  for (const auto& [key, most] : maximum)
+    for (double view_zenith_deg : views_of(planet, key.first))
+      for (int azimuth = 0; azimuth < 7; ++azimuth)
+        grid.push_back(ray_from_degrees(key.first, view_zenith_deg, key.second, 30.0 * azimuth));
+  const std::vector<Light> lights = march_rays(planet, grid, {});
+  size_t next = 0;
+  for (auto& [key, most] : maximum)
+    for (int i = 0; i < 60 * 7; ++i, ++next)
+      for (double value : lights[next].radiance) most = std::max(most, value);
+  for (TruthRow& row : rows) row.sky_maximum = maximum.at({row.ray.altitude_km, row.sun_zenith_deg});
+  return rows;
+}
+
+void Errors::add(const reference::Rgb& got, const reference::Rgb& want, double floor) {
+  for (int i = 0; i < 3; ++i) {
+    if (!(want[i] > floor)) continue;
+    const double error = std::abs(got[i] / want[i] - 1.0);
+    values.push_back(error >= 0.0 ? error : 1e30);  // NaN counts as an error, not as absent
+  }
+}
+
+double Errors::maximum() const { return values.empty() ? 1e30 : *std::max_element(values.begin(), values.end()); }
+
+double Errors::quantile(double share) const {
+  if (values.empty()) return 1e30;
+  std::vector<double> sorted = values;
+  const size_t place = std::min(static_cast<size_t>(share * double(sorted.size())), sorted.size() - 1);
+  std::nth_element(sorted.begin(), sorted.begin() + place, sorted.end());
+  return sorted[place];
+}
+
+}  // namespace welkin::test
