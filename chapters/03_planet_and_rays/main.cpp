@@ -18,7 +18,11 @@ int main(int argc, char** argv) {
       .reference = {{"rays.form", "double_float"}},
       .default_scene = "earth",
       // From the grass to the Moon's distance: each loses other digits.
-      .standard_views = {{"earth", "grass"}, {"earth", "summit"}, {"orbit", "limb"}, {"orbit", "geostationary"}, {"orbit", "moon_limb"}},
+      .standard_views = {{"earth", "grass"},
+                         {"earth", "summit"},
+                         {"orbit", "limb"},
+                         {"orbit", "geostationary"},
+                         {"orbit", "moon_limb"}},
       .window = open_window_system,
       .make = [](const app::Context& context) { return std::make_unique<PlanetAndRays>(context); }};
   return app::run(argc, argv, chapter);

@@ -34,7 +34,12 @@ std::vector<Knob> planet_knobs() {
        .integer = true,
        .choices = {"shaded", "distance", "distance_error", "normal", "altitude_of_hit"},
        .rebuilds = true},
-      {.name = "camera.zoom", .unit = "x", .meaning = "telescope in front of the view", .minimum = 1.0, .maximum = 600.0, .initial = 1.0},
+      {.name = "camera.zoom",
+       .unit = "x",
+       .meaning = "telescope in front of the view",
+       .minimum = 1.0,
+       .maximum = 600.0,
+       .initial = 1.0},
   };
 }
 // [/knobs]

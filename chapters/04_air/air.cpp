@@ -22,7 +22,7 @@ void require(bool good, const char* what, double value, const char* accepted) {
 double refractive_index(double wavelength_um) {
   require(wavelength_um >= 0.23 && wavelength_um <= 1.69, "wavelength", wavelength_um, "0.23 … 1.69 um");
   const double wavenumber2 = 1.0 / (wavelength_um * wavelength_um);  // um^-2
-  return 1.0 + 1e-8 * (5791817.0 / (238.0185 - wavenumber2) + 167909.0 / (57.362 - wavenumber2));  // Peck & Reeder 1972, eq. 3
+  return 1.0 + 1e-8 * (5791817.0 / (238.0185 - wavenumber2) + 167909.0 / (57.362 - wavenumber2));  // Peck and Reeder 1972, four constants
 }
 // [/refractive_index]
 
@@ -149,12 +149,12 @@ AirVariant air_variant(const Scene& scene) {
     if (effect.name == "mie") variant.mie = effect.on;
     if (effect.name == "ozone") variant.ozone = effect.on;
   }
-  if (variant.mie) variant.mie_phase = static_cast<int>(scene.medium("mie")->phase);
+  if (variant.mie) variant.mie_phase = static_cast<uint32_t>(scene.medium("mie")->phase);
   return variant;
 }
 
 gpu::Specialization specialization(const AirVariant& variant) {
-  return {variant.rayleigh, variant.mie, variant.ozone, static_cast<uint32_t>(variant.mie_phase)};
+  return {variant.rayleigh, variant.mie, variant.ozone, variant.mie_phase};
 }
 // [/variant]
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "common/gpu/pipeline.hpp"
@@ -57,7 +58,7 @@ interop::Atmosphere make_atmosphere(const Scene& scene);
 // Which constituents a scene has: the specialization constants 0 to 3 of shaders/04_air/variant.glsl.
 struct AirVariant {
   bool rayleigh = false, mie = false, ozone = false;
-  int mie_phase = 0;  // 0 henyey_greenstein, 1 cornette_shanks, 2 draine, 3 double_hg
+  uint32_t mie_phase = 0;  // 0 henyey_greenstein, 1 cornette_shanks, 2 draine, 3 double_hg
   bool operator==(const AirVariant&) const = default;
 };
 AirVariant air_variant(const Scene& scene);

@@ -99,20 +99,19 @@ void ConstantSkyProgram::draw(const app::Frame& frame) {
   vkCmdUpdateBuffer(commands, atmosphere_.handle, 0, sizeof air, &air);
   gpu::buffer_barrier(commands, atmosphere_.handle, updated, {compute | fragment, VK_ACCESS_2_UNIFORM_READ_BIT});
 
-  if (per_vertex_) {
-    constexpr VkPipelineStageFlags2 vertex = VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT;
-    gpu::buffer_barrier(commands, colours_.handle, {vertex}, gpu::kComputeWrite);
-    {
-      const gpu::TimedPass pass(frame.timer, commands, "vertex colours");
-      dispatch_rays(commands, colour_pipeline_, colour_set_, frame.camera, static_cast<uint32_t>(directions_.bytes / sizeof(glm::vec4)));
-    }
-    gpu::buffer_barrier(commands, colours_.handle, gpu::kComputeWrite, {vertex, VK_ACCESS_2_SHADER_STORAGE_READ_BIT});
-  }
-
   // The sky image: read by the finish pass of an earlier frame, drawn into, read by the finish pass of this one.
   constexpr gpu::Use drawn{VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
   gpu::image_barrier(commands, sky_.handle, {compute}, drawn);
-  draw_sphere(frame);
+  {
+    const gpu::TimedPass pass(frame.timer, commands, "sky sphere");  // its vertices' colours included, so that methods compare
+    if (per_vertex_) {
+      constexpr VkPipelineStageFlags2 vertex = VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT;
+      gpu::buffer_barrier(commands, colours_.handle, {vertex}, gpu::kComputeWrite);
+      dispatch_rays(commands, colour_pipeline_, colour_set_, frame.camera, static_cast<uint32_t>(directions_.bytes / sizeof(glm::vec4)));
+      gpu::buffer_barrier(commands, colours_.handle, gpu::kComputeWrite, {vertex, VK_ACCESS_2_SHADER_STORAGE_READ_BIT});
+    }
+    draw_sphere(frame);
+  }
   gpu::image_barrier(commands, sky_.handle, drawn, gpu::kComputeRead);
 
   gpu::image_barrier(commands, frame.target.handle, {compute}, gpu::kComputeWrite);
@@ -122,7 +121,6 @@ void ConstantSkyProgram::draw(const app::Frame& frame) {
 
 void ConstantSkyProgram::draw_sphere(const app::Frame& frame) {
   const VkCommandBuffer commands = frame.commands;
-  const gpu::TimedPass pass(frame.timer, commands, "sky sphere");
   const VkRenderingAttachmentInfo colour{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
                                          .imageView = sky_.view,
                                          .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,

@@ -2,7 +2,9 @@
 #include "chapters/04_air/sky_sphere.hpp"
 
 #include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <sstream>

@@ -8,7 +8,7 @@
 float precise_angle(float a, float b) {
   float q = b > 0.0 ? a / b : 2.0;
   if (abs(q) < 0.1) return q * (1.0 - q * q * (1.0 / 3.0 - q * q * 0.2));
-  return atan(a, b);
+  return atan(a, b > 0.0 ? b : min(b, -1.0e-20));  // atan(0, 0) is undefined
 }
 
 // Arc lengths on the ground from the point below the camera, east and north, of a point given relative to that point.

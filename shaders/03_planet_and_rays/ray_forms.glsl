@@ -1,8 +1,8 @@
 // Four ways to intersect a ray with a planet, from the one everybody writes first to the one with twice the digits.
 // The robust one, which the rest of the book uses, stands in ray_sphere.glsl.
 //
-// The ray starts at o = (0, 0, R + h), measured from the planet's centre, with the unit direction d in the local frame
-// (z up). Its points o + t d lie on the sphere of radius R_s = R + shell where
+// The ray starts at o, r = |o| = R + h from the planet's centre, with the unit direction d, given in the local frame at
+// the camera (z up). Its points o + t d lie on the sphere of radius R_s = R + shell where
 //   t^2 + 2 b t + c = 0,   b = o·d = (R + h) d_z,   c = o·o - R_s^2,   t = -b -/+ sqrt(b^2 - c).
 // Lengths in km. Every form keeps what `Chord` promises and returns neither NaN nor infinity in its domain.
 #ifndef WELKIN_RAY_FORMS_GLSL
@@ -23,11 +23,18 @@ Chord chord_of_roots(float near_km, float far_km) {
 }
 
 // [naive]
-// As in every introduction. Three differences of nearly equal numbers: in c, in b^2 - c, and in -b - sqrt(...).
+// As everyone writes it first: positions in a frame at the planet's centre, here with the camera above Zagreb (45.815 N,
+// 15.982 E). One unit in the last place of a position is 0.5 m, and three differences of nearly equal numbers follow: in c,
+// in b^2 - c, and in -b - sqrt(...).
+const vec3 PLACE_EAST = vec3(-0.275335353, 0.961348243, 0.000000000);
+const vec3 PLACE_NORTH = vec3(-0.689376192, -0.197441082, 0.696977392);
+const vec3 PLACE_UP = vec3(0.670037991, 0.191902516, 0.717093100);
+
 Chord naive_chord(float ground_radius_km, float altitude_km, vec3 direction, float shell_km) {
-  vec3 origin = vec3(0.0, 0.0, ground_radius_km + altitude_km);  // from the centre: 0.5 m is one unit in the last place
+  vec3 origin = PLACE_UP * (ground_radius_km + altitude_km);
+  vec3 d = PLACE_EAST * direction.x + PLACE_NORTH * direction.y + PLACE_UP * direction.z;
   float radius = ground_radius_km + shell_km;
-  float b = dot(origin, direction);
+  float b = dot(origin, d);
   float c = dot(origin, origin) - radius * radius;
   float discriminant = b * b - c;
   if (discriminant < 0.0) return Chord(-1.0, -1.0);

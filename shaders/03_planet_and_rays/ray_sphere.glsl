@@ -19,7 +19,9 @@ struct Chord {
 };
 
 // [altitude_along]
-// Altitude after a distance t along the ray, t >= 0.
+// Altitude after a distance t along the ray, t >= 0. For rays that start within a few radii of the planet: r(t)^2 is a
+// difference of squares as large as r^2, so from the Moon's distance the altitude of a point near the ground is only
+// known to a few km. Move the start to where the ray enters the air first.
 float altitude_along(float ground_radius_km, float altitude_km, float mu, float t_km) {
   float r = ground_radius_km + altitude_km;
   float r_t = sqrt(max(r * r + t_km * (2.0 * r * mu + t_km), 0.0));

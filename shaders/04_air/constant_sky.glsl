@@ -13,7 +13,7 @@
 #include "04_air/medium.glsl"
 
 // Share of depolarised light of air at 550 nm, from its King factor (air.hpp: depolarization).
-const float AIR_DEPOLARIZATION = 0.0286;
+const float AIR_DEPOLARIZATION = 0.0283;
 
 // [mean_transmittance]
 // (1 - exp(-x)) / x for x >= 0, in float32: the quotient is 0/0 at x = 0 and has lost half its digits long before.

@@ -52,7 +52,7 @@ float henyey_greenstein_phase_naive(float nu, float g) {
 // [/henyey_greenstein]
 
 // [draine]
-// Draine 2003, eq. 4: Henyey-Greenstein times (1 + alpha nu^2) / (1 + alpha (1 + 2 g^2) / 3).
+// Draine 2003: Henyey-Greenstein times (1 + alpha nu^2) / (1 + alpha (1 + 2 g^2) / 3).
 // alpha = 0: Henyey-Greenstein; alpha = 1: Cornette-Shanks; g = 0, alpha = 1: Rayleigh.
 float draine_phase(float one_minus_nu, float g, float alpha) {
   float nu = 1.0 - one_minus_nu;
@@ -70,7 +70,7 @@ float double_hg_phase(float one_minus_nu, float g, float second_g, float second_
 }
 
 // Water droplets of 5 to 50 um diameter: a Henyey-Greenstein peak and a Draine body, fitted to Mie's series by
-// Jendersie and d'Eon 2023 (their equations 4 to 7).
+// Jendersie and d'Eon 2023.
 float droplet_phase(float one_minus_nu, float diameter_um) {
   float peak_g = exp(-0.0990567 / (diameter_um - 1.67154));
   float body_g = exp(-2.20679 / (diameter_um + 3.91029) - 0.428934);

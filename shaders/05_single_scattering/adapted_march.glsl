@@ -1,10 +1,133 @@
-// The adapted rule and the whole ray: panels of Gauss nodes where the light is. Included by single_scattering.glsl.
+// The adapted rule: panels of Gauss nodes where the light is. Pure functions; km. Read march.glsl first.
+#ifndef WELKIN_ADAPTED_MARCH_GLSL
+#define WELKIN_ADAPTED_MARCH_GLSL
 
-const int kMaxCells = 32;          // cells of the estimate that places the panels: four per panel, at least eight
+#include "05_single_scattering/scale_count.glsl"
+
+// What a stretch of the march hands to the next one.
+struct Stretch {
+  vec3 radiance;
+  vec3 column;     // xy: (rayleigh, mie) from the first point of the ray, km; z: ozone from the tangent to that point
+};
+
+// [gauss4_up_to]
+// Row by row, the integrals from 0 to each of the four Gauss nodes of the cubic through four values at the nodes (the
+// Butcher matrix of the Gauss method of order eight).
+const vec4 kGauss4UpTo[4] = {
+    vec4(0.086963711284363, -0.026604180084999, 0.012627462689405, -0.003555149685796),
+    vec4(0.188118117499868, 0.163036288715637, -0.027880428602471, 0.006735500594538),
+    vec4(0.167191921974188, 0.353953006033745, 0.163036288715636, -0.014190694931141),
+    vec4(0.177482572254523, 0.313445114741868, 0.352676757516272, 0.086963711284364)};
+// [/gauss4_up_to]
+
+// [panel]
+// One panel of four Gauss nodes over counts [x_a, x_b]. Columns up to each node come from the panel's own densities, by
+// the integrals of their interpolating polynomial, so that the whole panel has one order. The nodes are the components
+// of a vec4, not elements of an array: registers, not memory.
+Stretch march_panel(Atmosphere atmosphere, AirRay ray, Line line, ScaleCount count, ScatteringTowardsEye scattering,
+                    Stretch before, float x_a, float x_b) {
+  float dx = x_b - x_a;
+  float radius_km = atmosphere.shape.x;
+  vec4 altitude;
+  vec4 mu_sun;
+  vec4 rayleigh;  // columns per panel width at the nodes
+  vec4 mie;
+  vec4 ozone;
+  for (int i = 0; i < 4; i++) {
+    CountedPoint point = point_at_count(count, ray, line, x_a + dx * kGauss4Node[i]);
+    vec3 air = densities(atmosphere, point.altitude_km) * (point.dt_dx * dx);
+    altitude[i] = point.altitude_km;
+    mu_sun[i] = mu_sun_along(ray, radius_km, point.t_km, point.altitude_km);
+    rayleigh[i] = air.x;
+    mie[i] = air.y;
+    ozone[i] = ozone_from_tangent(atmosphere, line, point.altitude_km, point.s_km);
+  }
+  Stretch after = before;
+  vec2 passed = vec2(0.0, 0.0);
+  float passed_width = 0.0;
+  for (int i = 0; i < 4; i++) {
+    vec2 air = vec2(rayleigh[i], mie[i]);
+    vec2 inside = vec2(dot(rayleigh, kGauss4UpTo[i]), dot(mie, kGauss4UpTo[i]));
+    // A panel over many scale heights defeats the polynomial, which then dips below zero and would let light through:
+    // half of what the weights alone say is a floor that a resolved panel never reaches.
+    inside = max(inside, (passed + air * (kGauss4Node[i] - passed_width)) * 0.5);
+    passed += air * kGauss4Weight[i];
+    passed_width += kGauss4Weight[i];
+    vec3 column = vec3(before.column.x + inside.x, before.column.y + inside.y, ozone[i] - before.column.z);
+    column += sun_columns(atmosphere, altitude[i], mu_sun[i]);
+    vec3 source = scattering.rayleigh * air.x + scattering.mie * air.y;
+    after.radiance += source * exp(-extinction(atmosphere, column)) * kGauss4Weight[i];
+  }
+  after.column.x += passed.x;
+  after.column.y += passed.y;
+  return after;
+}
+// [/panel]
+
+// [shadow_interval]
+// Interval [x, y] of the ray's length in the planet's shadow, empty when x >= y. Distance to the shadow's axis squared:
+// a t^2 + 2 b t + c + R^2 with a = 1 - nu^2, b = r (mu - mu_sun nu), c = h (2R + h) - (r mu_sun)^2.
+vec2 shadow_interval(AirRay ray, float ground_radius_km) {
+  float r = ground_radius_km + ray.altitude_km;
+  float a = max(ray.sine2_nu, 1.0e-14);
+  float b = r * (ray.mu - ray.mu_sun * ray.nu);
+  float c = ray.altitude_km * (2.0 * ground_radius_km + ray.altitude_km) - r * ray.mu_sun * r * ray.mu_sun;
+  float discriminant = b * b - a * c;
+  if (discriminant <= 0.0) return vec2(0.0, 0.0);
+  float q = -(b + (b < 0.0 ? -sqrt(discriminant) : sqrt(discriminant)));
+  float root_1 = q / a;
+  float root_2 = abs(q) > 0.0 ? c / q : root_1;
+  float enter = min(root_1, root_2);
+  float leave = max(root_1, root_2);
+  // Only beyond the planet's centre is it dark: r mu_sun + t nu < 0.
+  float crossing = -r * ray.mu_sun / (abs(ray.nu) > 1.0e-20 ? ray.nu : 1.0e-20);
+  if (ray.nu > 0.0) leave = min(leave, crossing);
+  if (ray.nu < 0.0) enter = max(enter, crossing);
+  if (ray.nu == 0.0 && ray.mu_sun >= 0.0) leave = enter;
+  return vec2(clamp(enter, 0.0, ray.length_km), clamp(leave, 0.0, ray.length_km));
+}
+// [/shadow_interval]
+
+// Columns from the ray's first point to count x, by quadratures of their own (48 nodes at most).
+vec3 columns_to_count(Atmosphere atmosphere, AirRay ray, Line line, ScaleCount count, float x) {
+  CountedPoint point = point_at_count(count, ray, line, x);
+  float s_start = (line.ground_radius_km + ray.altitude_km) * ray.mu;
+  return columns_between(atmosphere, line, s_start, ray.altitude_km, max(point.s_km, s_start), point.altitude_km, 3);
+}
+
+// [glimpse]
+// Estimated contribution to the radiance per count around x; column_to_eye is updated past the cell.
+struct Glimpse {
+  vec3 contribution;
+  vec3 tau;
+  vec3 column;
+};
+
+Glimpse glimpse(Atmosphere atmosphere, AirRay ray, Line line, ScaleCount count, ScatteringTowardsEye scattering, vec3 column,
+                float x, float dx) {
+  float radius_km = atmosphere.shape.x;
+  CountedPoint point = point_at_count(count, ray, line, x);
+  vec3 density = densities(atmosphere, point.altitude_km) * point.dt_dx;
+  float mu_sun = mu_sun_along(ray, radius_km, point.t_km, point.altitude_km);
+  Line light = line_through(radius_km, point.altitude_km, mu_sun, sqrt((1.0 - mu_sun) * (1.0 + mu_sun)));
+  light.tangent_km = max(light.tangent_km, mu_sun < 0.0 ? 0.0 : light.tangent_km);
+  vec3 sun = vec3(0.0, 0.0, 0.0);
+  if (HAS_RAYLEIGH) sun.x = exponential_column_estimate(light, point.altitude_km, mu_sun, atmosphere.rayleigh.w);
+  if (HAS_MIE) sun.y = exponential_column_estimate(light, point.altitude_km, mu_sun, atmosphere.mie_scattering.w);
+  Glimpse result;
+  vec3 tau = extinction(atmosphere, column + density * (0.5 * dx) + max(sun, vec3(0.0, 0.0, 0.0)));
+  result.tau = tau;
+  result.contribution = (scattering.rayleigh * density.x + scattering.mie * density.y) * exp(-tau);
+  result.column = column + density * dx;
+  return result;
+}
+// [/glimpse]
+
+const int kMaxCells = 32;          // cells of the estimate that places the panels: two per panel, at least eight
 const float kUnseen = 1.0e-4;      // light below this share of the peak, in every channel, is left out at the ends
-const float kDim = 1.0e-2;         // share of the peak below which light asks for fewer nodes
-const float kSlopeWeight = 0.5;    // nodes asked for per unit of optical depth, relative to those per count
-const float kLeastWeight = 0.3;    // nodes that even darkness between two bright stretches asks for
+const float kDim = 3.0e-3;         // share of the peak below which light asks for fewer nodes
+const float kSlopeWeight = 0.4;    // nodes asked for per unit of optical depth, relative to those per count
+const float kLeastWeight = 0.6;    // nodes that even darkness between two bright stretches asks for
 
 // A lit piece of the ray: cells of equal count that an estimate looks at, and the panels it is given.
 struct Piece {
@@ -30,14 +153,16 @@ Piece piece_between(float begin, float end, int first_cell, int cells) {
   return piece;
 }
 
+// [adapted_march]
 // The march of the adapted rule.
 // 1. The shadow cuts the ray into at most two lit pieces; the rest only absorbs.
 // 2. A closed-form estimate looks at a few cells of each piece. Cells at the ends that hold less than 1e-4 of the peak
 //    in every channel are left out.
 // 3. Panels share the rest by weight: evenly in scale heights where there is light, denser where its optical depth
 //    changes fast, thinner where it is below a hundredth of the peak.
-// 4. Eight Gauss nodes integrate each panel; what lies before a piece enters by its columns alone.
-RayLight adapted_march(Atmosphere atmosphere, AirRay ray, ScatteringTowardsEye scattering, int view_steps, int light_steps) {
+// 4. Four Gauss nodes integrate each panel; what lies before a piece enters by its columns alone.
+// The whole ray's transmittance is a quadrature of its own, done only if wanted (1 otherwise).
+RayLight adapted_march(Atmosphere atmosphere, AirRay ray, ScatteringTowardsEye scattering, int view_steps, bool want_transmittance) {
   float radius_km = atmosphere.shape.x;
   Line line = line_through(radius_km, ray.altitude_km, ray.mu, ray.sine);
   ScaleCount count = scale_count(atmosphere, line);
@@ -54,48 +179,49 @@ RayLight adapted_march(Atmosphere atmosphere, AirRay ray, ScatteringTowardsEye s
   float x_leave = has_shadow ? clamp(count_along(count, line, ray, shadow.y), x_enter, x_end) : x_end;
 
   bool both = x_enter > x_begin && x_end > x_leave;
-  int panels = max((view_steps + 7) / 8, 1);
-  int cells = clamp(4 * panels, 8, kMaxCells);
+  int panels = max((view_steps + 3) / 4, 1);
+  int cells = clamp(2 * panels, 8, kMaxCells);
   Piece piece[2];
   piece[0] = piece_between(x_begin, x_enter, 0, both ? cells / 2 : cells);
   piece[1] = piece_between(x_leave, x_end, piece[0].last_cell + 1, both ? cells / 2 : cells);
 
-  vec3 light[kMaxCells];
-  vec3 slope[kMaxCells];
+  vec4 seen[kMaxCells];  // xyz: light per count; w: change of the largest optical depth per count
   vec3 peak = vec3(1.0e-37, 1.0e-37, 1.0e-37);
   vec3 column = vec3(0.0, 0.0, 0.0);
   for (int k = 0; k < 2; k++) {
     if (piece[k].last_cell >= piece[k].first_cell && piece[k].begin > x_begin) {
       column = columns_to_count(atmosphere, ray, line, count, piece[k].begin);
     }
-    vec3 tau_before = vec3(0.0, 0.0, 0.0);
+    float tau_before = 0.0;
     for (int j = piece[k].first_cell; j <= piece[k].last_cell; j++) {
       float x = piece[k].begin + piece[k].width * (float(j - piece[k].first_cell) + 0.5);
-      Glimpse seen = glimpse(atmosphere, ray, line, count, scattering, column, x, piece[k].width);
-      column = seen.column;
-      light[j] = seen.contribution;
-      slope[j] = abs(seen.tau - (j == piece[k].first_cell ? seen.tau : tau_before)) / piece[k].width;
-      if (j == piece[k].first_cell + 1) slope[j - 1] = slope[j];
-      tau_before = seen.tau;
-      peak = max(peak, light[j]);
+      Glimpse look = glimpse(atmosphere, ray, line, count, scattering, column, x, piece[k].width);
+      column = look.column;
+      float tau = max(max(look.tau.x, look.tau.y), look.tau.z);
+      float slope = abs(tau - (j == piece[k].first_cell ? tau : tau_before)) / piece[k].width;
+      seen[j] = vec4(look.contribution, slope);
+      if (j == piece[k].first_cell + 1) seen[j - 1].w = slope;
+      tau_before = tau;
+      peak = max(peak, look.contribution);
     }
   }
   // With more panels the ends matter sooner: what is left out must shrink with the error.
-  float unseen = kUnseen * min(1.0, 64.0 / float(panels * panels * panels));
+  float unseen = kUnseen * min(1.0, 512.0 / float(panels * panels * panels));
   float weight[kMaxCells];
   for (int k = 0; k < 2; k++) {
     for (int j = piece[k].first_cell; j <= piece[k].last_cell; j++) {
-      vec3 share = light[j] / peak;
+      vec3 share = vec3(seen[j]) / peak;
       if (max(max(share.x, share.y), share.z) >= unseen) {
         piece[k].first_seen = min(piece[k].first_seen, j);
         piece[k].last_seen = j;
       }
-      share = share / (share + kDim) * (vec3(1.0, 1.0, 1.0) + min(slope[j], vec3(10.0, 10.0, 10.0)) * kSlopeWeight);
+      share = share / (share + kDim) * (1.0 + min(seen[j].w, 10.0) * kSlopeWeight);
       weight[j] = (kLeastWeight + share.x + share.y + share.z) * piece[k].width;
     }
     for (int j = piece[k].first_seen; j <= piece[k].last_seen; j++) piece[k].weight += weight[j];
   }
 
+  float ozone_begin = ozone_from_tangent(atmosphere, line, ray.altitude_km, (radius_km + ray.altitude_km) * ray.mu);
   RayLight result;
   result.radiance = vec3(0.0, 0.0, 0.0);
   int panels_left = panels;
@@ -112,6 +238,7 @@ RayLight adapted_march(Atmosphere atmosphere, AirRay ray, ScatteringTowardsEye s
     Stretch march;
     march.radiance = result.radiance;
     march.column = from > x_begin ? columns_to_count(atmosphere, ray, line, count, from) : vec3(0.0, 0.0, 0.0);
+    march.column.z = ozone_begin;
     float passed = 0.0;
     for (int n = 1; n <= piece_panels; n++) {
       float wanted = piece[k].weight * float(n) / float(piece_panels);
@@ -123,64 +250,17 @@ RayLight adapted_march(Atmosphere atmosphere, AirRay ray, ScatteringTowardsEye s
       if (last) cell = piece[k].last_seen;
       float into = last ? 1.0 : clamp((wanted - passed) / weight[cell], 0.0, 1.0);
       float to = piece[k].begin + piece[k].width * (float(cell - piece[k].first_cell) + into);
-      march = march_panel(atmosphere, ray, line, count, scattering, march, from, min(to, x_end), light_steps);
+      march = march_panel(atmosphere, ray, line, count, scattering, march, from, min(to, x_end));
       from = to;
     }
     result.radiance = march.radiance;
   }
-  result.transmittance = exp(-extinction(atmosphere, columns_to_count(atmosphere, ray, line, count, x_end)));
-  return result;
-}
-
-// Radiance of the Lambert ground of albedo 1 under the direct sun, before the view ray's transmittance:
-// T(ground, sun) max(mu_sun, 0) / pi.
-vec3 lit_ground(Atmosphere atmosphere, float mu_sun, int light_steps, int rule) {
-  if (mu_sun <= 0.0) return vec3(0.0, 0.0, 0.0);
-  vec3 column = vec3(0.0, 0.0, 0.0);
-  if (rule == kRuleAdapted) {
-    column = sun_columns(atmosphere, 0.0, mu_sun, light_steps);
-  } else {
-    float radius_km = atmosphere.shape.x;
-    float light_length = distance_to_shell_from_inside(radius_km, 0.0, mu_sun, atmosphere.shape.y);
-    for (int j = 0; j < light_steps; j++) {
-      Segment step = quadrature_segment(rule, j, light_steps);
-      float h = altitude_along(radius_km, 0.0, mu_sun, step.sample_at * light_length);
-      column += densities(atmosphere, max(h, 0.0)) * (step.width * light_length);
-    }
-  }
-  return exp(-extinction(atmosphere, column)) * (mu_sun * 0.31830988618379067);
-}
-
-// Radiance and transmittance of a ray: single scattering and the directly lit ground, without the sun's disc.
-//   altitude_km     of the camera, any value; below ground counts as on it
-//   view_direction  unit vector in the camera's local frame, z up; sun_direction likewise
-//   view_steps, light_steps >= 1 samples. Gauss-Legendre rounds both up to a multiple of four; adapted rounds the view up
-//                   to eight (and needs eight for each of two lit pieces), the light to four (eight where it dips)
-//   rule            kRuleLeft ... kRuleAdapted
-// A ray that misses the air gives radiance 0 and transmittance 1.
-RayLight single_scattering(Atmosphere atmosphere, float altitude_km, vec3 view_direction, vec3 sun_direction, int view_steps,
-                           int light_steps, int rule) {
-  int view_count = max(view_steps, 1);
-  int light_count = max(light_steps, 1);
-  if (rule == kRuleGaussLegendre) {
-    view_count = (view_count + 3) / 4 * 4;
-    light_count = (light_count + 3) / 4 * 4;
-  }
-  RayLight result;
-  result.radiance = vec3(0.0, 0.0, 0.0);
   result.transmittance = vec3(1.0, 1.0, 1.0);
-  AirRay ray = enter_air(atmosphere, altitude_km, view_direction, sun_direction);
-  if (!ray.hits_air) return result;
-  ScatteringTowardsEye scattering = scattering_towards_eye(atmosphere, one_minus_cosine(view_direction, sun_direction));
-  if (rule == kRuleAdapted) {
-    result = adapted_march(atmosphere, ray, scattering, view_count, light_count);
-  } else {
-    result = fixed_march(atmosphere, ray, scattering, view_count, light_count, rule);
+  if (want_transmittance) {
+    result.transmittance = exp(-extinction(atmosphere, columns_to_count(atmosphere, ray, line, count, x_end)));
   }
-  if (ray.hits_ground) {
-    float mu_sun = mu_sun_along(ray, atmosphere.shape.x, ray.length_km, 0.0);
-    result.radiance += result.transmittance * vec3(atmosphere.ground) * lit_ground(atmosphere, mu_sun, light_count, rule);
-  }
-  result.radiance *= vec3(atmosphere.sun);
   return result;
 }
+// [/adapted_march]
+
+#endif

@@ -20,10 +20,12 @@ void main() {
   const vec3 sun = camera.sun.xyz;
   const float altitude_km = camera.right.w;
 
-  const RayLight sky = single_scattering(atmosphere, altitude_km, view, sun, steps.x, steps.y, RULE);
+  // Only the sun's disc is seen through the air and needs the transmittance: a few pixels of the picture.
+  const vec3 disc = SUN_DISC ? sun_disc_radiance(atmosphere.sun.xyz, atmosphere.shape.w, one_minus_cosine(view, sun)) : vec3(0.0);
+  const bool on_disc = SUN_DISC && disc.g > 0.0;
+  const RayLight sky = scattered_light(atmosphere, altitude_km, view, sun, steps.x, steps.y, RULE, on_disc);
   vec3 radiance = sky.radiance;
-  if (SUN_DISC && !enter_air(atmosphere, altitude_km, view, sun).hits_ground)
-    radiance += sky.transmittance * sun_disc_radiance(atmosphere.sun.xyz, atmosphere.shape.w, one_minus_cosine(view, sun));
+  if (on_disc && !enter_air(atmosphere, altitude_km, view, sun).hits_ground) radiance += sky.transmittance * disc;
   imageStore(target, pixel, vec4(radiance, 1.0));
 }
 // [/image]

@@ -1,28 +1,17 @@
 // Columns of air on straight paths: what sunlight crosses before it is scattered. Pure functions; km.
 //
 // A path is measured from its line's tangent point: s = r mu, altitude h(s) = h_p + s^2 / (b + sqrt(b^2 + s^2)).
-// In units of sqrt(2 b H) the density near that point is exp(-y^2): every scale height H asks for nodes at other
-// places, so each exponential constituent gets its own; ozone's tent is integrated piece by piece.
+// Near that point the density is exp(-y^2) in units of sqrt(2 b H): its integral is an error function, and stays close to
+// one all the way out. Ozone's tent is integrated piece by piece.
 #ifndef WELKIN_LIGHT_PATH_GLSL
 #define WELKIN_LIGHT_PATH_GLSL
 
 #include "03_planet_and_rays/ray_sphere.glsl"
 #include "04_air/medium.glsl"
 
-// Gauss-Legendre nodes and weights of four points on [0, 1].
-const float kGauss4Outer = 0.069431844202973712;
-const float kGauss4Inner = 0.330009478207571868;
-const float kGauss4WeightOuter = 0.173927422568726929;
-const float kGauss4WeightInner = 0.326072577431273071;
-
-float gauss4_node(int i) {
-  float node = i == 0 || i == 3 ? kGauss4Outer : kGauss4Inner;
-  return i < 2 ? node : 1.0 - node;
-}
-
-float gauss4_weight(int i) {
-  return i == 0 || i == 3 ? kGauss4WeightOuter : kGauss4WeightInner;
-}
+// Gauss-Legendre nodes and weights of four points on [0, 1]. All four are evaluated at once: no loop, no array.
+const vec4 kGauss4Node = vec4(0.069431844202973712, 0.330009478207571868, 0.669990521792428132, 0.930568155797026288);
+const vec4 kGauss4Weight = vec4(0.173927422568726929, 0.326072577431273071, 0.326072577431273071, 0.173927422568726929);
 
 struct Line {
   float ground_radius_km;
@@ -46,75 +35,74 @@ float chord_to(Line line, float altitude_km) {
 // Integral of exp(-(h - h_a)/H) ds over s in [s_a, s_b], 0 <= s_a, h_a = h(s_a); `panels` of four Gauss nodes. On the
 // map s = s_a + D z (bend + (1 - bend) z) nodes gather at s_a; bend = 1 where the line is horizontal at s_a.
 float exponential_leg(Line line, float s_a, float s_b, float scale_height_km, float bend, int panels) {
-  float length = s_b - s_a;
+  float span = s_b - s_a;
   float r_a = sqrt(line.b_km * line.b_km + s_a * s_a);
-  float panel = 1.0 / float(panels);
+  float dz = 1.0 / float(panels);
   float sum = 0.0;
-  for (int i = 0; i < 4 * panels; i++) {
-    float z = (float(i / 4) + gauss4_node(i % 4)) * panel;
-    float t = length * z * (bend + (1.0 - bend) * z);
-    float rise = t * (2.0 * s_a + t);
-    float above = rise / (r_a + sqrt(r_a * r_a + rise));
-    sum += gauss4_weight(i % 4) * (bend + 2.0 * (1.0 - bend) * z) * exp(-above / scale_height_km);
+  for (int p = 0; p < panels; p++) {
+    vec4 z = (kGauss4Node + float(p)) * dz;
+    vec4 t = z * (z * (1.0 - bend) + bend) * span;
+    vec4 rise = t * (t + 2.0 * s_a);
+    vec4 above = rise / (sqrt(rise + r_a * r_a) + r_a);
+    sum += dot(kGauss4Weight * (z * (2.0 - 2.0 * bend) + bend), exp(above * (-1.0 / scale_height_km)));
   }
-  return sum * length * panel;
+  return sum * span * dz;
 }
 
-// Integral of exp(-h/H) from a point at altitude h to the top, with about `steps` nodes. mu is the zenith cosine there.
-// Paths are cut ten scale heights above their lowest point, where 5e-5 of the column is left.
-float exponential_column(Line line, float altitude_km, float r_mu, float top_km, float scale_height_km, int steps) {
-  float lowest_km = r_mu < 0.0 ? line.tangent_km : altitude_km;
-  float s_start = abs(r_mu);
-  float s_end = chord_to(line, min(top_km, lowest_km + 10.0 * scale_height_km));
-  float ground_density = exp(-lowest_km / scale_height_km);
-  int panels = max((steps + 3) / 4, 1);
-  if (r_mu >= 0.0) {
-    float bend = 1.0 - 1.4 * s_start / max(s_start + s_end, 1.0e-20);
-    return ground_density * exponential_leg(line, s_start, max(s_end, s_start), scale_height_km, bend, panels);
-  }
-  // The path dips to the tangent point: fold it there. Both halves are equal up to s_start.
-  int half_panels = max(panels / 2, 1);
-  float fold = min(s_start, s_end);
-  float middle = chord_to(line, lowest_km + 6.0 * scale_height_km);
-  float folded;
-  if (fold < chord_to(line, lowest_km + 0.56 * scale_height_km)) {
-    // Too shallow a dip to be worth a panel of its own: straight across it.
-    float start_density = exp(-(altitude_km - lowest_km) / scale_height_km);
-    folded = start_density * exponential_leg(line, -fold, s_end, scale_height_km, 1.0, panels);
-  } else if (fold < middle) {
-    folded = 2.0 * exponential_leg(line, 0.0, fold, scale_height_km, 1.0, half_panels);
-    if (fold < s_end) {
-      float bend = 1.0 - 1.4 * fold / (fold + s_end);
-      float h_fold_density = exp(-(altitude_km - lowest_km) / scale_height_km);
-      folded += h_fold_density * exponential_leg(line, fold, s_end, scale_height_km, bend, half_panels);
-    }
-  } else {
-    folded = 2.0 * exponential_leg(line, 0.0, fold, scale_height_km, 1.0, 2 * half_panels);
-  }
-  return ground_density * folded;
+// [closed_form]
+// sqrt(pi) exp(y^2) erfc(y) for y >= 0, relative error below 5e-6: t times a polynomial in t = 1 / (1 + 0.55 y), fitted by
+// least squares at Chebyshev nodes. It tends to 1/y.
+float scaled_erfc(float y) {
+  float t = 1.0 / (1.0 + 0.55 * y);
+  return t * (0.5500016937 + t * (0.5497359168 + t * (0.4732278677 + t * (0.2440005334 + t * (0.3169050620 + t * (-0.5373271221 + t * 0.1759175966))))));
 }
 
-// Integral of the ozone tent from the tangent point to the altitude h on the line. On either side of the peak the
-// tent is linear in altitude, altitude is nearly quadratic in s, and two Gauss nodes integrate cubics exactly.
+// Integral of exp(-h/H) from the altitude h on the line outward, to infinity: no nodes at all. s is the distance from the
+// tangent point, so that y = s / sqrt(H (r + b)) keeps its digits close to it, where (h - h_p) / H has none left.
+//   With u = (h' - h_p) / H above the tangent point, ds = H G(u) u^(-1/2) du / sqrt(H), G(u) = (b + H u) / sqrt(2 b + H u),
+//   and G hardly changes over the one scale height that matters: G(u) = G(z) (1 + k (u - z)), z = (h - h_p) / H = y^2.
+//   C = exp(-h/H) sqrt(H / (r + b)) r [ I_0 + k I_1 ],    k = H / r - H / (2 (r + b)),
+//   I_0 = sqrt(pi) exp(z) erfc(y),   I_1 = y + (1/2 - z) I_0.            Error of the order (H/r)^2: 1e-5 on Earth.
+float column_outward(Line line, float altitude_km, float s_km, float scale_height_km) {
+  float r = line.ground_radius_km + altitude_km;
+  float sum = r + line.b_km;
+  float y = s_km / sqrt(scale_height_km * sum);
+  float i_0 = scaled_erfc(y);
+  float i_1 = y + (0.5 - y * y) * i_0;
+  float k = scale_height_km * (1.0 / r - 0.5 / sum);
+  return exp(-altitude_km / scale_height_km) * sqrt(scale_height_km / sum) * r * (i_0 + k * i_1);
+}
+
+// The same from a point at altitude h to the top, towards r_mu; folded at the tangent point if the path dips there.
+float exponential_column_to_top(Line line, float altitude_km, float r_mu, float top_km, float scale_height_km) {
+  float column = column_outward(line, altitude_km, abs(r_mu), scale_height_km);
+  if (r_mu < 0.0) column = 2.0 * column_outward(line, line.tangent_km, 0.0, scale_height_km) - column;
+  // What lies above the top is not air. It matters where the air is thick there.
+  if (top_km < 12.0 * scale_height_km) column -= column_outward(line, max(top_km, altitude_km), chord_to(line, top_km), scale_height_km);
+  return max(column, 0.0);
+}
+// [/closed_form]
+
+// Integral of the ozone tent over the line's points between two altitudes, both on one side of the tangent point. Below
+// and above the peak the tent is linear in altitude, altitude is nearly quadratic in s, and Simpson integrates cubics.
+float ozone_column_between(Atmosphere atmosphere, Line line, float low_km, float high_km) {
+  float h_0 = clamp(atmosphere.ozone.w - atmosphere.shape.z, low_km, high_km);
+  float h_1 = clamp(atmosphere.ozone.w, low_km, high_km);
+  float h_2 = clamp(atmosphere.ozone.w + atmosphere.shape.z, low_km, high_km);
+  float s_0 = chord_to(line, h_0);
+  float s_1 = chord_to(line, h_1);
+  float s_2 = chord_to(line, h_2);
+  float a = 0.5 * (s_0 + s_1);
+  float b = 0.5 * (s_1 + s_2);
+  float h_a = line.tangent_km + a * a / (line.b_km + sqrt(line.b_km * line.b_km + a * a) + 1.0e-20);
+  float h_b = line.tangent_km + b * b / (line.b_km + sqrt(line.b_km * line.b_km + b * b) + 1.0e-20);
+  float middle = ozone_density(atmosphere, h_1);
+  return ((s_1 - s_0) * (ozone_density(atmosphere, h_0) + 4.0 * ozone_density(atmosphere, h_a) + middle) +
+          (s_2 - s_1) * (middle + 4.0 * ozone_density(atmosphere, h_b) + ozone_density(atmosphere, h_2))) * 0.16666666666666667;
+}
+
 float ozone_column_from_tangent(Atmosphere atmosphere, Line line, float altitude_km) {
-  float column = 0.0;
-  for (int side = 0; side < 2; side++) {
-    float low = atmosphere.ozone.w - (side == 0 ? atmosphere.shape.z : 0.0);
-    float h_a = max(low, line.tangent_km);
-    float h_b = min(low + atmosphere.shape.z, altitude_km);
-    if (h_b > h_a) {
-      float s_a = chord_to(line, h_a);
-      float length = chord_to(line, h_b) - s_a;
-      for (int i = 0; i < 2; i++) {
-        float t = length * (i == 0 ? 0.211324865405187118 : 0.788675134594812882);
-        float rise = t * (2.0 * s_a + t);
-        float r_a = line.ground_radius_km + h_a;
-        float above = rise / (r_a + sqrt(r_a * r_a + rise));
-        column += 0.5 * length * ozone_density(atmosphere, h_a + above);
-      }
-    }
-  }
-  return column;
+  return ozone_column_between(atmosphere, line, line.tangent_km, max(altitude_km, line.tangent_km));
 }
 
 // Integral of exp(-h/H) between two points of a line, s_a < s_b, either side of the tangent point or both.
@@ -145,7 +133,7 @@ float ozone_from_tangent(Atmosphere atmosphere, Line line, float altitude_km, fl
 
 // Columns (rayleigh, mie, ozone) in km from a lit point at altitude h to the top, towards the zenith cosine mu_sun.
 // The planet is never in the way: a tangent point below the ground is rounding and counts as touching it.
-vec3 sun_columns(Atmosphere atmosphere, float altitude_km, float mu_sun, int steps) {
+vec3 sun_columns(Atmosphere atmosphere, float altitude_km, float mu_sun) {
   float radius_km = atmosphere.shape.x;
   float top_km = atmosphere.shape.y;
   float r_mu = (radius_km + altitude_km) * mu_sun;
@@ -156,11 +144,11 @@ vec3 sun_columns(Atmosphere atmosphere, float altitude_km, float mu_sun, int ste
     r_mu = -chord_to(line, altitude_km);
   }
   vec3 column = vec3(0.0, 0.0, 0.0);
-  if (HAS_RAYLEIGH) column.x = exponential_column(line, altitude_km, r_mu, top_km, atmosphere.rayleigh.w, steps);
-  if (HAS_MIE) column.y = exponential_column(line, altitude_km, r_mu, top_km, atmosphere.mie_scattering.w, steps);
+  if (HAS_RAYLEIGH) column.x = exponential_column_to_top(line, altitude_km, r_mu, top_km, atmosphere.rayleigh.w);
+  if (HAS_MIE) column.y = exponential_column_to_top(line, altitude_km, r_mu, top_km, atmosphere.mie_scattering.w);
   if (HAS_OZONE) {
-    float here = ozone_column_from_tangent(atmosphere, line, altitude_km);
-    column.z = ozone_column_from_tangent(atmosphere, line, top_km) + (r_mu < 0.0 ? here : -here);
+    column.z = ozone_column_between(atmosphere, line, altitude_km, max(top_km, altitude_km));
+    if (r_mu < 0.0) column.z += 2.0 * ozone_column_from_tangent(atmosphere, line, altitude_km);
   }
   return max(column, vec3(0.0, 0.0, 0.0));
 }

@@ -43,19 +43,25 @@ Ray ray_past(Random& random, double radius_km, double altitude_km, double tangen
   const double r = radius_km + altitude_km, b = std::clamp(radius_km + tangent_altitude_km, 0.0, r);
   const double sine = r > 0.0 ? b / r : 0.0, mu = r > 0.0 ? -std::sqrt((r - b) * (r + b)) / r : -1.0;
   const double azimuth = random.uniform(0.0, 6.283185307179586);
-  return {static_cast<float>(radius_km),             static_cast<float>(altitude_km),
-          static_cast<float>(sine * std::sin(azimuth)), static_cast<float>(sine * std::cos(azimuth)),
-          static_cast<float>(mu),                    static_cast<float>(shell_km)};
+  return {static_cast<float>(radius_km),
+          static_cast<float>(altitude_km),
+          static_cast<float>(sine * std::sin(azimuth)),
+          static_cast<float>(sine * std::cos(azimuth)),
+          static_cast<float>(mu),
+          static_cast<float>(shell_km)};
 }
 
 FormErrors measure_form(Form form, double altitude_km) {
   Random random(301);
   std::vector<Ray> rays;
   const size_t per_kind = 200000;
-  // Past the limb at 0.1 mm to 20 km above and below it, but never above the camera.
+  // Past the limb at up to 20 km above and below it, but never above the camera: half of them within a micrometre …
+  // a kilometre on a logarithmic scale, because the horizon is found by the last hit, half evenly within `reach`.
+  const double reach = std::max(1e-3, 20.0 * std::min(altitude_km / kMoon_km, 1.0));
   for (size_t i = 0; i < per_kind; ++i) {
-    const double from_limb = random.log_uniform(1e-7, 20.0);
-    rays.push_back(ray_past(random, kEarth_km, altitude_km, i % 2 == 0 ? -from_limb : std::min(from_limb, altitude_km)));
+    const double from_limb = i % 4 < 2 ? random.log_uniform(1e-11, 1.0) : random.uniform(0.0, reach);
+    rays.push_back(
+        ray_past(random, kEarth_km, altitude_km, i % 2 == 0 ? -from_limb : std::min(from_limb, altitude_km)));
   }
   for (size_t i = 0; i < per_kind; ++i)  // steeply down: tangent point anywhere in the inner 90 % of the radius
     rays.push_back(ray_past(random, kEarth_km, altitude_km, kEarth_km * (random.uniform(0.0, 0.9) - 1.0)));
@@ -69,7 +75,8 @@ FormErrors measure_form(Form form, double altitude_km) {
     const bool hit = found[i].ground_km >= 0.0f;
     if (i < per_kind) {
       if (hit) farthest = std::max(farthest, static_cast<double>(found[i].ground_km));
-      if (hit != truth.hit) errors.limb_m = std::max(errors.limb_m, static_cast<double>(std::abs(truth.depth_km)) * 1000.0);
+      if (hit != truth.hit)
+        errors.limb_m = std::max(errors.limb_m, static_cast<double>(std::abs(truth.depth_km)) * 1000.0);
     } else {
       const double error = hit ? static_cast<double>(std::abs(found[i].ground_km - truth.enter_km)) : INFINITY;
       errors.steep_m = std::max(errors.steep_m, error * 1000.0);

@@ -20,10 +20,10 @@ struct Ray {
 };
 
 struct TrueChord {
-  bool hit;                         // some part of the ray lies inside the shell
-  long double enter_km, leave_km;   // of the line, even where it misses by less than rounding (then the tangent point)
-  long double depth_km;             // shell - tangent altitude: how far the line dips below it; negative: passes above
-  long double root_km;              // half of the line's chord
+  bool hit;                        // some part of the ray lies inside the shell
+  long double enter_km, leave_km;  // of the line, even where it misses by less than rounding (then the tangent point)
+  long double depth_km;            // shell - tangent altitude: how far the line dips below it; negative: passes above
+  long double root_km;             // half of the line's chord
   long double mu, sine;
 };
 TrueChord true_chord(const Ray& ray);
@@ -40,8 +40,8 @@ Ray ray_past(Random& random, double radius_km, double altitude_km, double tangen
 // How wrong a form is for a camera at one altitude above the Earth's ground.
 struct FormErrors {
   double horizon_percent = 0.0;  // farthest ground it finds, against the distance of the horizon
-  double limb_m = 0.0;           // largest |tangent altitude| of a ray it takes for a hit and that misses, or the reverse
-  double steep_m = 0.0;          // largest error of the distance to the ground, rays well inside the disc
+  double limb_m = 0.0;   // largest |tangent altitude| of a ray it takes for a hit and that misses, or the reverse
+  double steep_m = 0.0;  // largest error of the distance to the ground, rays well inside the disc
   double steep_relative = 0.0;
 };
 FormErrors measure_form(Form form, double altitude_km);

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
-#include <map>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -122,23 +121,42 @@ std::vector<TruthRow> truth_rows(const std::string& file, const reference::Plane
     rows.push_back({v[1], v[2], v[3], ray_from_degrees(v[0], v[1], v[2], v[3]), rgb(13), rgb(16), rgb(19), rgb(22)});
   }
 
-  std::map<std::pair<double, double>, double> maximum;  // of a camera's altitude and the sun's zenith angle
-  for (const TruthRow& row : rows) {
-    double& most = maximum[{row.ray.altitude_km, row.sun_zenith_deg}];
-    for (double value : row.henyey_greenstein) most = std::max(most, value);
-  }
+  std::set<Camera> cameras;
+  for (const TruthRow& row : rows) cameras.insert({row.ray.altitude_km, row.sun_zenith_deg});
+  std::map<Camera, double> maxima = sky_maxima(planet, cameras);
+  for (const TruthRow& row : rows)
+    for (double value : row.henyey_greenstein) {
+      double& most = maxima.at({row.ray.altitude_km, row.sun_zenith_deg});
+      most = std::max(most, value);
+    }
+  for (TruthRow& row : rows) row.sky_maximum = maxima.at({row.ray.altitude_km, row.sun_zenith_deg});
+  return rows;
+}
+
+std::map<Camera, double> sky_maxima(const reference::Planet& planet, const std::set<Camera>& cameras) {
   std::vector<SkyRay> grid;
-  for (const auto& [key, most] : maximum)
-    for (double view_zenith_deg : views_of(planet, key.first))
+  for (const Camera& camera : cameras)
+    for (double view_zenith_deg : views_of(planet, camera.first))
       for (int azimuth = 0; azimuth < 7; ++azimuth)
-        grid.push_back(ray_from_degrees(key.first, view_zenith_deg, key.second, 30.0 * azimuth));
+        grid.push_back(ray_from_degrees(camera.first, view_zenith_deg, camera.second, 30.0 * azimuth));
   const std::vector<Light> lights = march_rays(planet, grid, {});
+  std::map<Camera, double> maxima;
   size_t next = 0;
-  for (auto& [key, most] : maximum)
+  for (const Camera& camera : cameras) {
+    double& most = maxima[camera];
     for (int i = 0; i < 60 * 7; ++i, ++next)
       for (double value : lights[next].radiance) most = std::max(most, value);
-  for (TruthRow& row : rows) row.sky_maximum = maximum.at({row.ray.altitude_km, row.sun_zenith_deg});
-  return rows;
+  }
+  return maxima;
+}
+
+std::vector<std::array<float, 8>> evaluate_parts(std::span<const Part> parts) {
+  std::vector<float> inputs(parts.size() * 8);
+  std::memcpy(inputs.data(), parts.data(), inputs.size() * sizeof(float));
+  const std::vector<float> outputs = evaluate("tests/05_parts.comp", inputs, 8, 8);
+  std::vector<std::array<float, 8>> results(parts.size());
+  std::memcpy(results.data(), outputs.data(), outputs.size() * sizeof(float));
+  return results;
 }
 
 void Errors::add(const reference::Rgb& got, const reference::Rgb& want, double floor) {

@@ -3,8 +3,11 @@
 #pragma once
 
 #include <array>
+#include <map>
+#include <set>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/reference/quadrature.hpp"
@@ -59,10 +62,23 @@ struct TruthRow {
   double sky_maximum = 0.0;
 };
 
-// The table with sky_maximum filled in: the brightest channel of the black-ground sky (Henyey-Greenstein) for the row's
-// camera and sun, over the table's rows and a grid of 7 azimuths by 60 zenith angles (in space: 60 tangent altitudes)
-// marched at 32 x 8. A grid can only miss some of the maximum, and a smaller one scores more rows, not fewer.
+// A camera's altitude in km and its sun's zenith angle in degrees.
+using Camera = std::pair<double, double>;
+
+// The brightest channel of each camera's sky over black ground (Henyey-Greenstein, g 0.8), over a grid of 7 azimuths by
+// 60 zenith angles (in space: 60 tangent altitudes) marched at 32 x 8. A grid can only miss some of the maximum, and a
+// smaller maximum scores more rays, not fewer.
+std::map<Camera, double> sky_maxima(const reference::Planet& planet, const std::set<Camera>& cameras);
+
+// The table with sky_maximum filled in: the larger of the grid's and of the table's own rows for that camera.
 std::vector<TruthRow> truth_rows(const std::string& file, const reference::Planet& planet);
+
+// One item for tests/gpu/shaders/05_parts.comp: which function, then its arguments. Eight floats come back for each.
+struct Part {
+  enum { kSegment, kMeanTransmittance, kSunColumns, kSunUp, kEnter, kDisc };
+  float values[8] = {};
+};
+std::vector<std::array<float, 8>> evaluate_parts(std::span<const Part> parts);
 
 SkyRay ray_from_degrees(double altitude_km, double view_zenith_deg, double sun_zenith_deg, double azimuth_deg);
 
