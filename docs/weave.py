@@ -156,7 +156,7 @@ def csv_table(root, page, name, columns=None, where=()):
 def bench(root, page, name):
     data = read_json(root, name)
     try:
-        timed = [*data["passes"], {"name": "wall clock, whole frame", **data["wall"]}]
+        timed = [*data["passes"], {"name": "wall clock, whole frame", **data["wall_ms"]}]
         rows = [[cell(t["name"]), *(number(t[key]) for key in ("median_ms", "min_ms", "max_ms"))] for t in timed]
         shown = f"chapter {data['chapter']}, scene {data['scene']}, view {data['view']}, {data['width']}×{data['height']}"
         label = ["software driver: says nothing about a GPU"] if data["software"] else []

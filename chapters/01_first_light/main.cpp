@@ -13,7 +13,7 @@ int main(int argc, char** argv) {
       .whats_new = "A compute shader writes an image; the image comes back and becomes a file.",
       .try_next = "./welkin run 02   (the same image in a window)",
       .display = app::Display::raw,
-      .standard_views = {{"noon", ""}},
+      .standard_views = {{"noon", "horizon"}},
       .make = [](const app::Context& context) { return std::make_unique<FirstLight>(context); }};
   return app::run(argc, argv, chapter);
   // [/chapter]

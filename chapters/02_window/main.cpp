@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
       .whats_new = "The image of chapter 01 on screen: swapchain, frames in flight, panel, shader reload.",
       .try_next = "./welkin run 03   (a planet)",
       .display = app::Display::raw,
-      .standard_views = {{"noon", ""}},
+      .standard_views = {{"noon", "horizon"}},
       .window = open_window_system,
       .make = [](const app::Context& context) { return std::make_unique<FirstLight>(context); }};
   return app::run(argc, argv, chapter);

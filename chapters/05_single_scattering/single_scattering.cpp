@@ -19,11 +19,11 @@ constexpr VkDescriptorType kUniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
 
 struct ImagePush {
   CameraRays camera;
-  int32_t view_steps, light_steps, unused[2];
+  int32_t view_steps, unused[3];
 };
 
 struct ProbePush {
-  int32_t view_steps, light_steps, count, unused;
+  int32_t view_steps, count, unused[2];
 };
 
 }  // namespace
@@ -32,7 +32,7 @@ struct ProbePush {
 // The product of the largest counts stays below 65,535: a software driver ends loops there, without a word.
 std::vector<Knob> march_knobs() {
   return {{.name = "view.steps", .unit = "steps", .meaning = "samples along the view ray", .minimum = 1, .maximum = 512, .initial = 32, .integer = true, .ladder = {8, 16, 32, 64, 128}},
-          {.name = "light.steps", .unit = "steps", .meaning = "samples along each path to the sun (the adapted rule has a closed form instead)", .minimum = 1, .maximum = 120, .initial = 8, .integer = true, .ladder = {4, 8, 16}},
+          {.name = "light.steps", .unit = "steps", .meaning = "samples along each path to the sun (the adapted rule has a closed form instead)", .minimum = 1, .maximum = 120, .initial = 8, .integer = true, .ladder = {4, 8, 16}, .rebuilds = true},
           {.name = "rule", .meaning = "where the samples sit and what they weigh", .initial = 5, .choices = {"left", "midpoint", "offset_0.3", "nonuniform", "gauss_legendre", "adapted"}, .ladder = {0, 1, 2, 3, 4, 5}, .rebuilds = true}};
 }
 // [/knobs]
@@ -69,7 +69,8 @@ SingleScattering::SingleScattering(const app::Context& context)
 // [rebuild]
 gpu::Specialization SingleScattering::variant() const {
   const AirVariant air = air_variant(context_.scene);
-  return {air.rayleigh, air.mie, air.ozone, air.mie_phase, context_.scene.sun.disc, static_cast<uint32_t>(context_.settings.integer("rule"))};
+  return {air.rayleigh, air.mie, air.ozone, air.mie_phase, context_.scene.sun.disc, static_cast<uint32_t>(context_.settings.integer("rule")),
+          static_cast<uint32_t>(context_.settings.integer("light.steps"))};
 }
 
 void SingleScattering::rebuild() {
@@ -99,7 +100,7 @@ void SingleScattering::draw(const app::Frame& frame) {
   constexpr gpu::Use earlier_read{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT};
   gpu::image_barrier(frame.commands, frame.target.handle, earlier_read, gpu::kComputeWrite);
   const gpu::TimedPass pass(frame.timer, frame.commands, "march");
-  const ImagePush push{frame.camera, context_.settings.integer("view.steps"), context_.settings.integer("light.steps"), {}};
+  const ImagePush push{frame.camera, context_.settings.integer("view.steps"), {}};
   gpu::dispatch_over(frame.commands, image_, image_set_, push, frame.target.size);
 }
 // [/draw]
@@ -124,7 +125,7 @@ std::vector<app::ProbeResult> SingleScattering::probe(std::span<const app::Probe
   for (size_t first = 0; first < rays.size(); first += kBatch) {
     const uint32_t count = static_cast<uint32_t>(std::min(kBatch, rays.size() - first));
     for (uint32_t i = 0; i < count; ++i) in.as<MarchRay>()[i] = march_ray(rays[first + i], context_.scene.planet);
-    const ProbePush push{context_.settings.integer("view.steps"), context_.settings.integer("light.steps"), static_cast<int32_t>(count), 0};
+    const ProbePush push{context_.settings.integer("view.steps"), static_cast<int32_t>(count), {}};
     gpu::run_once(device, pool, [&](VkCommandBuffer commands) {
       update_air(commands);
       vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.handle);

@@ -219,6 +219,7 @@ Exit run_golden(const Session& session) {
       if (!good && session.options.golden == Golden::check) result = Exit::mismatch;
     }
     if (session.options.golden == Golden::update) {
+      std::filesystem::create_directories(directory);
       image::write_exr(file, picture);
       write_file_atomically(recorded, driver + "\n");
       fmt::print("golden {}: written\n", name);

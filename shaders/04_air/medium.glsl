@@ -12,14 +12,15 @@
 #include "04_air/phase.glsl"
 
 float ozone_density(Atmosphere atmosphere, float altitude_km) {
-  return max(1.0 - abs(altitude_km - atmosphere.ozone.w) / atmosphere.shape.z, 0.0);
+  return max(1.0 - abs(altitude_km - atmosphere.ozone.w) * (1.0 / atmosphere.shape.z), 0.0);
 }
 
+// The reciprocals are the same for every sample: a compiler takes them out of loops, divisions it may not.
 // (rayleigh, mie, ozone) relative to the ground's, to the ground's and to the peak's; 0 for what does not exist.
 vec3 densities(Atmosphere atmosphere, float altitude_km) {
   vec3 density = vec3(0.0, 0.0, 0.0);
-  if (HAS_RAYLEIGH) density.x = exp(-altitude_km / atmosphere.rayleigh.w);
-  if (HAS_MIE) density.y = exp(-altitude_km / atmosphere.mie_scattering.w);
+  if (HAS_RAYLEIGH) density.x = exp(altitude_km * (-1.0 / atmosphere.rayleigh.w));
+  if (HAS_MIE) density.y = exp(altitude_km * (-1.0 / atmosphere.mie_scattering.w));
   if (HAS_OZONE) density.z = ozone_density(atmosphere, altitude_km);
   return density;
 }

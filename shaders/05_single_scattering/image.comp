@@ -9,23 +9,25 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 1, rgba32f) uniform writeonly image2D target;
 layout(push_constant) uniform Push {
   CameraRays camera;
-  ivec4 steps;  // x: view, y: light
+  ivec4 steps;  // x: view
 };
 
 // [image]
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, camera.size.xy))) return;
+  // A copy: loops then keep the numbers at hand instead of reading the uniform block at every sample.
+  const Atmosphere air = atmosphere;
   const vec3 view = camera_direction(camera, pixel);
   const vec3 sun = camera.sun.xyz;
   const float altitude_km = camera.right.w;
 
   // Only the sun's disc is seen through the air and needs the transmittance: a few pixels of the picture.
-  const vec3 disc = SUN_DISC ? sun_disc_radiance(atmosphere.sun.xyz, atmosphere.shape.w, one_minus_cosine(view, sun)) : vec3(0.0);
+  const vec3 disc = SUN_DISC ? sun_disc_radiance(air.sun.xyz, air.shape.w, one_minus_cosine(view, sun)) : vec3(0.0);
   const bool on_disc = SUN_DISC && disc.g > 0.0;
-  const RayLight sky = scattered_light(atmosphere, altitude_km, view, sun, steps.x, steps.y, RULE, on_disc);
+  const RayLight sky = scattered_light(air, altitude_km, view, sun, steps.x, LIGHT_STEPS, RULE, on_disc);
   vec3 radiance = sky.radiance;
-  if (on_disc && !enter_air(atmosphere, altitude_km, view, sun).hits_ground) radiance += sky.transmittance * disc;
+  if (on_disc && !enter_air(air, altitude_km, view, sun).hits_ground) radiance += sky.transmittance * disc;
   imageStore(target, pixel, vec4(radiance, 1.0));
 }
 // [/image]

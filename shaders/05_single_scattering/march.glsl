@@ -15,7 +15,7 @@ const int kRuleMidpoint = 1;       // in the middle
 const int kRuleHillaire = 2;       // at 0.3 of the segment (Hillaire 2020)
 const int kRuleNonuniform = 3;     // segments [(i/N)^2, ((i+1)/N)^2] L, sample in the middle
 const int kRuleGaussLegendre = 4;  // panels of four Gauss-Legendre nodes; a segment's length is its weight
-const int kRuleAdapted = 5;        // panels of eight in a coordinate that counts scale heights, placed where the light is
+const int kRuleAdapted = 5;        // panels of four in a coordinate that counts scale heights, placed where the light is
 // [/rules]
 
 struct RayLight {
@@ -33,13 +33,13 @@ struct Segment {
 // Segment i of n. The widths of a rule sum to 1 (for Gauss-Legendre when n is a multiple of four).
 Segment quadrature_segment(int rule, int i, int n) {
   Segment segment;
-  float begin = float(i) / float(n);
   segment.width = 1.0 / float(n);
+  float begin = float(i) * segment.width;
   segment.sample_at = begin;
   if (rule == kRuleMidpoint) segment.sample_at = begin + 0.5 * segment.width;
   if (rule == kRuleHillaire) segment.sample_at = begin + 0.3 * segment.width;
   if (rule == kRuleNonuniform) {
-    float end = float(i + 1) / float(n);
+    float end = float(i + 1) * segment.width;
     segment.width = (end - begin) * (end + begin);
     segment.sample_at = begin * begin + 0.5 * segment.width;
   }
@@ -55,8 +55,8 @@ Segment quadrature_segment(int rule, int i, int n) {
 // [mean_transmittance]
 // (1 - exp(-tau)) / tau, the mean transmittance of a homogeneous segment; a series where the quotient would cancel.
 float mean_transmittance(float tau) {
-  if (tau < 0.05) return 1.0 - tau * (0.5 - tau * (0.16666666666666667 - tau * 0.041666666666666667));
-  return (1.0 - exp(-tau)) / tau;
+  float series = 1.0 - tau * (0.5 - tau * (0.16666666666666667 - tau * 0.041666666666666667));
+  return tau < 0.05 ? series : (1.0 - exp(-tau)) / max(tau, 0.05);  // both, then a choice: no branch
 }
 // [/mean_transmittance]
 

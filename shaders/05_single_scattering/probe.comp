@@ -15,13 +15,13 @@ layout(binding = 2, std430) writeonly buffer Results {
   vec4 results[];  // two a ray: radiance, transmittance
 };
 layout(push_constant) uniform Push {
-  ivec4 steps;  // x: view, y: light, z: number of rays
+  ivec4 steps;  // x: view, y: number of rays
 };
 
 void main() {
   const uint i = gl_GlobalInvocationID.x;
-  if (i >= uint(steps.z)) return;
-  const RayLight light = single_scattering(atmosphere, rays[i].view.w, rays[i].view.xyz, rays[i].sun.xyz, steps.x, steps.y, RULE);
+  if (i >= uint(steps.y)) return;
+  const RayLight light = single_scattering(atmosphere, rays[i].view.w, rays[i].view.xyz, rays[i].sun.xyz, steps.x, LIGHT_STEPS, RULE);
   results[2 * i] = vec4(light.radiance, 0.0);
   results[2 * i + 1] = vec4(light.transmittance, 0.0);
 }

@@ -10,6 +10,7 @@ layout(constant_id = 2) const bool HAS_OZONE = true;
 layout(constant_id = 3) const int MIE_PHASE = 1;
 layout(constant_id = 4) const bool SUN_DISC = true;
 layout(constant_id = 5) const int RULE = 5;
+layout(constant_id = 6) const int LIGHT_STEPS = 8;  // the innermost loop: its length known, a compiler unrolls it
 // [/variant]
 
 #include "05_single_scattering/single_scattering.glsl"

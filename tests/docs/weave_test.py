@@ -43,7 +43,7 @@ sunset,8,12345.678,nan
 """
 BENCH = {"chapter": "05", "scene": "noon", "view": "horizon", "device": "llvmpipe", "driver": "Mesa", "software": True,
          "width": 640, "height": 360, "passes": [{"name": "march", "median_ms": 1.23456, "min_ms": 1, "max_ms": 2}],
-         "wall": {"median_ms": 3, "min_ms": 2, "max_ms": 4}}
+         "wall_ms": {"median_ms": 3, "min_ms": 2, "max_ms": 4}}
 KNOBS = {"chapter": "05", "knobs": [
     {"name": "view.steps", "unit": "steps", "meaning": "samples | ray", "minimum": 1, "maximum": 1024, "initial": 32,
      "ladder": [8, 32]},

@@ -21,15 +21,18 @@ void set(float (&to)[4], const reference::Rgb& rgb, double w) {
   to[3] = static_cast<float>(w);
 }
 
-// Zenith angles that see the whole sky of a camera: dense at the horizon; from space, by the altitude of the tangent point.
+// Zenith angles that see the whole sky of a camera: dense at the horizon; from space, by the altitude of the tangent
+// point.
 std::vector<double> views_of(const reference::Planet& planet, double altitude_km) {
   std::vector<double> zenith_deg;
   for (int i = 0; i < 60; ++i) {
     if (altitude_km <= planet.top_radius_km - planet.ground_radius_km) {
       zenith_deg.push_back(i < 30 ? 3.05 * i : 88.6 + 0.4 * (i - 30));
     } else {
-      const double closest_km = std::max(planet.ground_radius_km + (i < 40 ? 2.5 * i - 2.0 : -5.0 - 300.0 * (i - 40)), 0.0);
-      zenith_deg.push_back(180.0 - std::asin(std::min(closest_km / (planet.ground_radius_km + altitude_km), 1.0)) * 180.0 / kPi);
+      const double closest_km =
+          std::max(planet.ground_radius_km + (i < 40 ? 2.5 * i - 2.0 : -5.0 - 300.0 * (i - 40)), 0.0);
+      zenith_deg.push_back(180.0 - std::asin(std::min(closest_km / (planet.ground_radius_km + altitude_km), 1.0)) *
+                                       180.0 / kPi);
     }
   }
   return zenith_deg;
@@ -64,7 +67,8 @@ RayItem ray_item(const reference::Planet& planet, const SkyRay& camera_ray, cons
   set(item.mie_scattering, planet.mie_scattering_per_km, planet.mie_scale_height_km);
   set(item.mie_extinction, planet.mie_extinction_per_km, march.g);
   set(item.ozone, planet.ozone_absorption_per_km, planet.ozone_peak_km);
-  set(item.shape, {planet.ground_radius_km, planet.top_radius_km - planet.ground_radius_km, planet.ozone_half_width_km}, 0.00465);
+  set(item.shape, {planet.ground_radius_km, planet.top_radius_km - planet.ground_radius_km, planet.ozone_half_width_km},
+      0.00465);
   set(item.ground, {march.albedo, march.albedo, march.albedo}, 0.0);
   set(item.sun_irradiance, {1.0, 1.0, 1.0}, 0.0);
   set(item.view, ray.view, ray.altitude_km);
@@ -84,7 +88,8 @@ std::vector<Light> march_items(std::span<const RayItem> items, const March& marc
     std::memcpy(inputs.data(), items.data() + first, count * sizeof(RayItem));
     const std::vector<float> outputs =
         evaluate("tests/05_ray.comp", inputs, kFloats, 6,
-                 {march.rayleigh, march.mie, march.ozone, static_cast<uint32_t>(march.phase), static_cast<uint32_t>(march.rule)});
+                 {march.rayleigh, march.mie, march.ozone, static_cast<uint32_t>(march.phase),
+                  static_cast<uint32_t>(march.rule)});
     for (size_t i = 0; i < count; ++i) {
       const float* out = outputs.data() + 6 * i;
       lights.push_back({{out[0], out[1], out[2]}, {out[3], out[4], out[5]}});

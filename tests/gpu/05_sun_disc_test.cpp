@@ -1,6 +1,5 @@
 // The sun's disc and the edge of the planet's shadow, against closed forms in double.
 #include <catch2/catch.hpp>
-
 #include <cmath>
 
 #include "tests/gpu/05_rays.hpp"
@@ -36,7 +35,8 @@ TEST_CASE("sun disc: as a whole it sends exactly the irradiance") {
     double irradiance[3] = {};
     for (int i = 0; i < kPoints; ++i, ++next)
       for (int k = 0; k < 3; ++k)
-        irradiance[k] += results[next][k] * kPi * std::pow(std::sin(double(radius)), 2) * 2.0 * (i + 0.5) / kPoints / kPoints;
+        irradiance[k] +=
+            results[next][k] * kPi * std::pow(std::sin(double(radius)), 2) * 2.0 * (i + 0.5) / kPoints / kPoints;
     CAPTURE(radius);
     // pow() of a driver may err by 1e-5; the midpoint sum by 1e-7.
     for (double value : irradiance) CHECK(value == Approx(1.0).epsilon(5e-5));
@@ -66,7 +66,8 @@ TEST_CASE("sun disc: nothing outside, whatever the radius") {
       parts.push_back({{Part::kDisc, radius, float(2.0 * half * half)}});
     }
   for (float radius : kRadii)
-    for (float one_minus_nu : {1.0f, 1.5f, 1.9999f, 2.0f}) parts.push_back({{Part::kDisc, radius, one_minus_nu}});  // behind
+    for (float one_minus_nu : {1.0f, 1.5f, 1.9999f, 2.0f})
+      parts.push_back({{Part::kDisc, radius, one_minus_nu}});  // behind
   for (const auto& result : evaluate_parts(parts))
     for (int k = 0; k < 3; ++k) CHECK(result[k] == 0.0f);
 }

@@ -1,8 +1,8 @@
 // Writes the table of errors on the page of chapter 05:
 //   WELKIN_TABLE=docs/generated/05_errors.csv gpu_tests "[05_table]"
-#include <catch2/catch.hpp>
 #include <fmt/format.h>
 
+#include <catch2/catch.hpp>
 #include <cstdlib>
 
 #include "common/image/csv.hpp"
@@ -26,8 +26,9 @@ TEST_CASE("table of errors of the rules", "[.][05_table]") {
       for (int planet = 0; planet < 2; ++planet) {
         std::vector<SkyRay> rays;
         for (const TruthRow& truth : tables[planet]) rays.push_back(truth.ray);
-        const std::vector<Light> lights =
-            march_rays(planets[planet], rays, {.view_steps = view_steps, .light_steps = light_steps, .rule = static_cast<Rule>(rule), .albedo = 0.3});
+        const std::vector<Light> lights = march_rays(
+            planets[planet], rays,
+            {.view_steps = view_steps, .light_steps = light_steps, .rule = static_cast<Rule>(rule), .albedo = 0.3});
         Errors errors;
         for (size_t i = 0; i < lights.size(); ++i) {
           reference::Rgb want = tables[planet][i].henyey_greenstein;
@@ -40,7 +41,8 @@ TEST_CASE("table of errors of the rules", "[.][05_table]") {
       rows.push_back(row);
     }
   write_csv(file,
-            {"relative error of the radiance on the rows of tests/data/single_scattering_*.csv above 1e-6 of the sky's maximum",
+            {"relative error of the radiance on the rows of tests/data/single_scattering_*.csv above 1e-6 of the sky's "
+             "maximum",
              "device: " + device().candidate().name, "driver: " + device().candidate().driver,
              "source: WELKIN_TABLE=docs/generated/05_errors.csv gpu_tests \"[05_table]\""},
             {"rule", "steps", "worst_percent_earth", "p99_percent_earth", "median_percent_earth", "worst_percent_alien",

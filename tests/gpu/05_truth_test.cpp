@@ -2,7 +2,6 @@
 // A value is scored where it is above 1e-6 of the sky's maximum for its camera and sun (see sky_maxima); the numbers of
 // scored values are asserted, so that the tests cannot shrink in silence.
 #include <catch2/catch.hpp>
-
 #include <cmath>
 
 #include "tests/gpu/05_rays.hpp"
@@ -90,7 +89,8 @@ TEST_CASE("truth: default steps hold 1 % on every row") {
 
 TEST_CASE("truth: a cheaper rung is worse, a dearer one better") {
   const Table& truth = table(false);
-  const double cheap = worst(truth, kAdapted, 16, 8), standard = worst(truth, kAdapted, 32, 8), dear = worst(truth, kAdapted, 64, 16);
+  const double cheap = worst(truth, kAdapted, 16, 8), standard = worst(truth, kAdapted, 32, 8),
+               dear = worst(truth, kAdapted, 64, 16);
   CAPTURE(cheap, standard, dear);
   CHECK(cheap < 0.2);      // seen: 12 %
   CHECK(cheap > 0.02);     // half the steps are not enough, whatever the promise says of the default
@@ -123,9 +123,9 @@ TEST_CASE("truth: every rule converges") {
     const Errors coarse = score(truth, with(bound.rule, 16, 16)).radiance;
     const Errors middle = score(truth, with(bound.rule, 64, 64)).radiance;
     const Errors fine = score(truth, with(bound.rule, 240, 240)).radiance;
-    UNSCOPED_INFO("rule " << bound.rule << " alien " << alien << ": worst " << coarse.maximum() << " " << middle.maximum() << " "
-                          << fine.maximum() << ", median " << coarse.quantile(0.5) << " " << middle.quantile(0.5) << " "
-                          << fine.quantile(0.5));
+    UNSCOPED_INFO("rule " << bound.rule << " alien " << alien << ": worst " << coarse.maximum() << " "
+                          << middle.maximum() << " " << fine.maximum() << ", median " << coarse.quantile(0.5) << " "
+                          << middle.quantile(0.5) << " " << fine.quantile(0.5));
     CHECK(fine.maximum() < bound.worst);
     CHECK(coarse.maximum() > middle.maximum());
     CHECK(middle.maximum() > fine.maximum());

@@ -52,7 +52,7 @@ MUTANTS = [
     ("ground lit without the cosine", "05_single_scattering/single_scattering.glsl",
      "* (mu_sun * 0.31830988618379067);", "* 0.31830988618379067;", DEFAULTS),
     ("the series of the mean transmittance with a wrong sign", "05_single_scattering/march.glsl",
-     "return 1.0 - tau * (0.5 - tau", "return 1.0 - tau * (0.5 + tau", "hard: the mean transmittance of almost no air"),
+     "1.0 - tau * (0.5 - tau", "1.0 - tau * (0.5 + tau", "hard: the mean transmittance of almost no air"),
     ("the sun's disc without its normalisation", "05_single_scattering/sun_disc.glsl",
      "* (alpha + vec3(2.0, 2.0, 2.0)) * 0.5;", ";", "sun disc: as a whole it sends exactly the irradiance"),
 ]
