@@ -146,12 +146,12 @@ void Panel::layout(const Chapter& chapter, const Scene& scene, Settings& setting
   ImGui::NewFrame();
   if (state.visible) {
     ImGui::SetNextWindowPos({8, 8}, ImGuiCond_FirstUseEver);
-    ImGui::SetNextWindowSize({330, 0}, ImGuiCond_FirstUseEver);
-    ImGui::Begin(fmt::format("{:02} {}", chapter.number, chapter.title).c_str());
-    ImGui::TextWrapped("%s", chapter.whats_new.c_str());
+    ImGui::Begin(fmt::format("{:02} {}", chapter.number, chapter.title).c_str(), nullptr, ImGuiWindowFlags_AlwaysAutoResize);
+    ImGui::PushTextWrapPos(340.0f);
+    ImGui::TextUnformatted(chapter.whats_new.c_str());
     ImGui::TextDisabled(state.flying ? "F: back to the panel" : "F: fly (WASD, Space, Ctrl, Shift, mouse)");
     ImGui::TextDisabled("R reload shaders  P screenshot  H hide  Esc quit");
-    ImGui::Text("altitude %.4g km, azimuth %.1f, elevation %.1f", app::altitude_km(pose, scene.planet.ground_radius_km), pose.azimuth_deg, pose.elevation_deg);
+    ImGui::Text("altitude %.4g km\nazimuth %.1f, elevation %.1f", app::altitude_km(pose, scene.planet.ground_radius_km), pose.azimuth_deg, pose.elevation_deg);
     if (!settings.knobs().empty() && ImGui::CollapsingHeader("Knobs", ImGuiTreeNodeFlags_DefaultOpen))
       for (const Knob& knob : settings.knobs())
         if (knob_widget(knob, settings)) state.changed.push_back(knob.name);
@@ -169,7 +169,8 @@ void Panel::layout(const Chapter& chapter, const Scene& scene, Settings& setting
       ImGui::PlotLines("total", state_->history.data(), static_cast<int>(kHistory), static_cast<int>(state_->next % kHistory), fmt::format("{:.3f} ms", total).c_str(), 0.0f, *std::max_element(state_->history.begin(), state_->history.end()) * 1.1f, {0, 48});
       ImGui::Text("%s held on %s", measure::human_bytes(device.allocated_bytes()).c_str(), device.candidate().name.c_str());
     }
-    if (!state.message.empty()) ImGui::TextWrapped("%s", state.message.c_str());
+    if (!state.message.empty()) ImGui::TextUnformatted(state.message.c_str());
+    ImGui::PopTextWrapPos();
     ImGui::End();
   }
   ImGui::Render();

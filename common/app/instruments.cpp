@@ -1,4 +1,5 @@
 // The measuring modes: --bench, --sweep, --probe, --golden.
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -84,6 +85,20 @@ struct OtherScene {
   OtherScene(const OtherScene&) = delete;
 };
 
+// The values of the knobs that are compiled into pipelines.
+std::vector<double> pipeline_values(const std::vector<double>& values, const Settings& settings) {
+  std::vector<double> compiled;
+  for (size_t i = 0; i < values.size(); ++i)
+    if (settings.knobs()[i].rebuilds) compiled.push_back(values[i]);
+  return compiled;
+}
+
+// Settings that share their pipelines stand together: making one can take a second.
+std::vector<std::vector<double>> ordered_by_pipeline(std::vector<std::vector<double>> ladder, const Settings& settings) {
+  std::stable_sort(ladder.begin(), ladder.end(), [&](const auto& a, const auto& b) { return pipeline_values(a, settings) < pipeline_values(b, settings); });
+  return ladder;
+}
+
 void must_have_standard_views(const Session& session) {
   if (session.chapter.standard_views.empty()) fail("{} has no standard views to measure", session.chapter.name);
 }
@@ -117,8 +132,8 @@ Exit run_sweep(const Session& session) {
   Progress progress("sweep", rungs * session.chapter.standard_views.size());
   for (const StandardView& standard : session.chapter.standard_views) {
     OtherScene other(session, standard);
-    const std::vector<std::vector<double>> ladder = measure::ladder_settings(other.settings);
     const Settings base = other.settings;
+    const std::vector<std::vector<double>> ladder = ordered_by_pipeline(measure::ladder_settings(base), base);
     const std::unique_ptr<Program> program = other.session.make_program();
     Renderer renderer(other.session.context, session.chapter, *program, size);
     const CameraPose pose = other.session.first_pose();
@@ -130,9 +145,11 @@ Exit run_sweep(const Session& session) {
     renderer.draw(pose, session.options.time_s, session.options.seed, 0);
     const Image reference = renderer.picture();
 
+    std::vector<double> compiled;
     for (const std::vector<double>& values : ladder) {
       other.settings = measure::with_values(base, values);
-      program->rebuild();
+      if (pipeline_values(values, base) != compiled || compiled.empty()) program->rebuild();
+      compiled = pipeline_values(values, base);
       const Timings timings = time_frames(other.session, renderer, pose, 1, device.software ? 3 : kRepeats);
       measure::SweepRow row{.view = standard.scene + "/" + standard.view, .gpu_ms = timings.gpu, .wall_ms = timings.wall,
                             .bytes = session.device.allocated_bytes(),

@@ -12,7 +12,7 @@ const parts = [
   [27, 'Part IV: clouds from data'],
   [31, 'Part V: a place'],
 ]
-const generalPages = ['reading_order', 'scenes', 'accuracy', 'hard_cases', 'glossary']
+const generalPages = ['reading_order', 'command_line', 'scenes', 'accuracy', 'hard_cases', 'glossary']
 
 function pageTitle(file) {
   const heading = /^# +(.+)$/m.exec(fs.readFileSync(path.join(docs, file), 'utf8'))

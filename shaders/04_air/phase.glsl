@@ -66,7 +66,9 @@ float cornette_shanks_phase(float one_minus_nu, float g) {
 
 // Two Henyey-Greenstein lobes, the second with weight in [0, 1]. Both have 1 - g^2 above.
 float double_hg_phase(float one_minus_nu, float g, float second_g, float second_weight) {
-  return mix(henyey_greenstein_phase(one_minus_nu, g), henyey_greenstein_phase(one_minus_nu, second_g), second_weight);
+  // Not mix(): a driver may compute a + w (b - a), which for w near 1 and a far larger than b has lost b.
+  return henyey_greenstein_phase(one_minus_nu, g) * (1.0 - second_weight) +
+         henyey_greenstein_phase(one_minus_nu, second_g) * second_weight;
 }
 
 // Water droplets of 5 to 50 um diameter: a Henyey-Greenstein peak and a Draine body, fitted to Mie's series by

@@ -52,11 +52,17 @@ double share(const std::vector<float>& values, Predicate predicate) {
   return double(std::count_if(values.begin(), values.end(), predicate)) / double(values.size());
 }
 
+// The figures of the naive form are those of one driver's rounding; what holds must hold on every one.
+bool on_lavapipe() { return device().candidate().name.find("llvmpipe") != std::string::npos; }
+
 }  // namespace
 
 TEST_CASE("hard: the horizon seen from 0.5 m") {
   // c = r^2 - R^2 is 6.36 km^2; floats near 4e7 are 4 apart, so the naive c is a multiple of 4. Above Zagreb it is 8.
-  CHECK(measure_form(kNaive, 0.0005).horizon_percent == Approx(12.15).margin(0.5));
+  // Another driver rounds elsewhere and gets another multiple: 4 on an NVIDIA H200, a horizon 21 % too near.
+  const double naive = measure_form(kNaive, 0.0005).horizon_percent;
+  if (on_lavapipe()) CHECK(naive == Approx(12.15).margin(0.5));
+  CHECK(std::abs(naive) > 10.0);
   CHECK(std::abs(measure_form(kRobust, 0.0005).horizon_percent) < 0.01);
   CHECK(measure_form(kNaive, 0.002).horizon_percent == Approx(-2.9).margin(0.7));
   CHECK(std::abs(measure_form(kRobust, 0.002).horizon_percent) < 0.01);
@@ -83,7 +89,7 @@ TEST_CASE("hard: the ground below one's feet, from 0.5 m") {
 
 TEST_CASE("hard: the limb seen from 36 000 km") {
   const FormErrors naive = measure_form(kNaive, 36000.0), robust = measure_form(kRobust, 36000.0);
-  CHECK(naive.limb_m > 35.0);
+  CHECK(naive.limb_m > (on_lavapipe() ? 35.0 : 10.0));  // 55 m there, 22 m on an NVIDIA H200
   CHECK(naive.limb_m < 75.0);
   CHECK(robust.limb_m < 1.0);
 }

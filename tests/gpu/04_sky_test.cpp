@@ -70,8 +70,11 @@ TEST_CASE("04 sky: a pixel of the drawn sphere is the sky along the pixel's ray"
       }
     const std::vector<float> out = test::evaluate("tests/04_constant_sky.comp", in, 35, 13, specialization(air_variant(drawing.scene)));
     size_t off = 0;
-    for (size_t i = 0; i < picture.pixels.size(); ++i)
-      for (int c = 0; c < 3; ++c) off += std::abs(picture.pixels[i][c] - out[13 * i + c]) > 2e-3 * out[13 * i + c] + 1e-7;
+    for (size_t i = 0; i < picture.pixels.size(); ++i) {
+      bool differs = false;
+      for (int c = 0; c < 3; ++c) differs |= std::abs(picture.pixels[i][c] - out[13 * i + c]) > 2e-3 * out[13 * i + c] + 1e-7;
+      off += differs;
+    }
     INFO(name << " " << view);
     // Interpolation puts the ray off by 1e-6 or so: that shows at the shell's edge and at the ground's, in a few pixels.
     CHECK(off <= picture.pixels.size() * 3 / 200);
