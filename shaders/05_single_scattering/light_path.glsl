@@ -86,6 +86,7 @@ float exponential_column_to_top(Line line, float altitude_km, float r_mu, float 
 // Integral of the ozone tent over the line's points between two altitudes, both on one side of the tangent point. Below
 // and above the peak the tent is linear in altitude, altitude is nearly quadratic in s, and Simpson integrates cubics.
 float ozone_column_between(Atmosphere atmosphere, Line line, float low_km, float high_km) {
+  if (high_km <= atmosphere.ozone.w - atmosphere.shape.z || low_km >= atmosphere.ozone.w + atmosphere.shape.z) return 0.0;
   float h_0 = clamp(atmosphere.ozone.w - atmosphere.shape.z, low_km, high_km);
   float h_1 = clamp(atmosphere.ozone.w, low_km, high_km);
   float h_2 = clamp(atmosphere.ozone.w + atmosphere.shape.z, low_km, high_km);
