@@ -79,7 +79,7 @@ void Settings::set_number(std::string_view name, double value) {
   const double minimum = knob.choices.empty() ? knob.minimum : 0.0;
   const bool whole = knob.integer || !knob.choices.empty();
   if (!(value >= minimum && value <= maximum) || (whole && value != std::floor(value)))
-    fail("{}={:g}: accepted is {}", name, value, accepted(knob));
+    fail("{}={}: accepted is {}", name, value, accepted(knob));
   values_[i] = value;
   explicit_[i] = true;
 }

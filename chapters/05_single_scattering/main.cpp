@@ -11,7 +11,7 @@ int main(int argc, char** argv) {
       .number = 5,
       .name = "05_single_scattering",
       .title = "Single scattering",
-      .whats_new = "A march along the view, one to the sun at each sample: the first true sky.",
+      .whats_new = "A march along the view, at each sample the air on the way to the sun: the first true sky.",
       .try_next = "./welkin run 05 --scene sunset   (or: ./welkin compare 04 05 --scene sunset)",
       .sky = true,
       .knobs = march_knobs(),

@@ -12,7 +12,8 @@ namespace welkin {
 std::vector<Knob> march_knobs();
 
 // A probe's ray as the shader takes it. For cameras above the air the first point is where the ray enters it, found in
-// double: seen from 36 000 km, rounding the direction to float32 alone would move the tangent point by 2.5 m.
+// double: seen from 36 000 km, rounding the direction to float32 alone moves the tangent point and puts the limb's
+// transmittance off by 0.1 %.
 // Rays that miss the air start at its top, looking up: they see nothing, through nothing.
 struct MarchRay {
   glm::vec4 view;  // xyz: direction in the local frame (z up), w: altitude in km

@@ -2,6 +2,8 @@
 #include <CLI/CLI.hpp>
 
 #include <cctype>
+#include <cmath>
+#include <filesystem>
 #include <iostream>
 
 #include "common/app/options.hpp"
@@ -101,6 +103,16 @@ bool parse_options(int argc, char** argv, const Chapter& chapter, Options& optio
     fail("{}; see {} --help", line, chapter.name);
   }
 
+  for (const CLI::Option* option : cli.get_options())
+    for (const std::string& value : option->results())
+      if (value.empty()) fail("{}: the value is empty; see {} --help", option->get_name(), chapter.name);
+  const int modes = !options.bench.empty() + !options.sweep.empty() + !options.probe.empty() + !golden.empty() + options.list_gpus +
+                    (options.explain || !options.against.empty() || !dump.empty());
+  if (modes > 1)
+    fail("one thing at a time: --list-gpus, --bench, --sweep, --probe, --golden, or a picture with --explain, --dump, --against");
+  if (!golden.empty() && (!set.empty() || (golden == "update" && !options.inject.empty())))
+    fail("--golden draws the standard views as they are: without --set, and --golden update without --inject");
+
   const auto whole = [](const char* option, const std::string& text, double low, double high) {
     double value = 0.0;
     if (!parse_number(text, value) || value < low || value > high || value != std::floor(value))
@@ -123,6 +135,16 @@ bool parse_options(int argc, char** argv, const Chapter& chapter, Options& optio
   if (!dump.empty()) {
     parse_choice<int>("--dump", dump[0], {{"picture", 0}, {"displayed", 0}, {"knobs", 0}});
     options.dump_what = dump[0], options.dump_file = dump[1];
+    const std::string extension = dump[0] == "picture" ? ".exr" : dump[0] == "displayed" ? ".png" : ".json";
+    if (!options.dump_file.ends_with(extension)) fail("--dump {} {}: the name must end in {}", dump[0], dump[1], extension);
+  }
+  // Where results go is looked at before the work is done, not after.
+  for (const std::string& file : {options.output, options.dump_file, options.bench, options.sweep, options.probe_out}) {
+    if (file.empty()) continue;
+    const std::filesystem::path target(file), parent = target.has_parent_path() ? target.parent_path() : ".";
+    std::error_code ignored;
+    if (!std::filesystem::is_directory(parent, ignored)) fail("cannot write '{}': no directory '{}'", file, parent.string());
+    if (std::filesystem::is_directory(target, ignored)) fail("cannot write '{}': it is a directory", file);
   }
   if (options.probe.empty() != options.probe_out.empty()) fail("--probe RAYS.csv and --probe-out FILE.csv go together");
   if (!options.output.empty() && !options.output.ends_with(".png") && !options.output.ends_with(".exr"))

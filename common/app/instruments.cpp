@@ -207,7 +207,7 @@ Exit run_probe(const Session& session) {
   }
   write_csv(session.options.probe_out,
             {fmt::format("{} scene {}, {} ({})", session.chapter.name, session.scene.name, session.device.candidate().name, session.device.candidate().driver),
-             "radiance per unit solar irradiance, without the sun's disc"},
+             "radiance for the scene's solar irradiance (1 unless it says otherwise), without the sun's disc"},
             names, rows);
   fmt::print("{} rays -> {}\n", table.rows, session.options.probe_out);
   return Exit::ok;

@@ -38,7 +38,8 @@ void print_times(const Session& session, Renderer& renderer) {
 
 void explain(const Session& session, Renderer& renderer, uint64_t allocations_by_later_frames) {
   fmt::print("effects of scene {}:\n", session.scene.name);
-  for (const Effect& effect : effects(session.scene)) fmt::print("  {:<14} {:<4} {}\n", effect.name, effect.on ? "on" : "off", effect.why);
+  if (!session.chapter.sky) fmt::print("  none: this chapter draws no air\n");
+  else for (const Effect& effect : effects(session.scene)) fmt::print("  {:<14} {:<4} {}\n", effect.name, effect.on ? "on" : "off", effect.why);
   fmt::print("passes:\n");
   for (const gpu::PassTime& pass : renderer.pass_times()) fmt::print("  {:<20} {:>10.3f} ms\n", pass.name, pass.milliseconds);
   fmt::print("memory:\n");

@@ -29,7 +29,7 @@ void read_back(const gpu::Device& device, VkCommandPool pool, const gpu::Image& 
 
 }  // namespace
 
-std::vector<ProbeResult> Program::probe(std::span<const ProbeRay>) { fail("--probe: this chapter has no sky to ask; chapter 05 and later do"); }
+std::vector<ProbeResult> Program::probe(std::span<const ProbeRay>) { fail("--probe: this chapter has no sky to ask; chapters from 04 on do"); }
 
 DisplayPass::DisplayPass(const gpu::Device& device)
     : pipeline_(gpu::create_compute_pipeline(device, "app/display.comp", {{0}, {1}}, sizeof(DisplayPush))),

@@ -8,6 +8,7 @@
 #include "common/image/png.hpp"
 #include "common/image/exr.hpp"
 #include "common/measure/knobs_json.hpp"
+#include "common/scene/one_line.hpp"
 #include "common/scene/scene_knobs.hpp"
 
 namespace welkin::app {
@@ -105,13 +106,15 @@ int run(int argc, char** argv, const Chapter& chapter) {
     Options options;
     if (!parse_options(argc, argv, chapter, options)) return static_cast<int>(Exit::ok);
     require_gpu = options.require_gpu;
-    return static_cast<int>(run_mode(chapter, options));
+    const Exit result = run_mode(chapter, options);
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) fail("standard output cannot be written");
+    return static_cast<int>(result);
   } catch (const Error& error) {
     const bool skipped = error.exit_code == Exit::skipped && !require_gpu;
-    std::fprintf(stderr, "%s: %s%s\n", chapter.name.c_str(), skipped ? "skipped: " : "", error.what());
+    std::fprintf(stderr, "%s: %s%s\n", chapter.name.c_str(), skipped ? "skipped: " : "", one_line(error.what()).c_str());
     return static_cast<int>(error.exit_code == Exit::skipped && require_gpu ? Exit::usage : error.exit_code);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s: %s\n", chapter.name.c_str(), error.what());
+    std::fprintf(stderr, "%s: %s\n", chapter.name.c_str(), one_line(error.what()).c_str());
     return static_cast<int>(Exit::usage);
   }
 }

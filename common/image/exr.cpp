@@ -145,7 +145,7 @@ void write_exr(const std::filesystem::path& path, const Image& picture, bool wit
   unsigned char* pointers[4];
   EXRChannelInfo infos[4] = {};
   int types[4];
-  for (int c = 0; c < channels; ++c) {
+  for (int c = 0; c < channels && c < 4; ++c) {
     infos[c].name[0] = names[static_cast<size_t>(c)];
     const int component = infos[c].name[0] == 'A' ? 3 : 2 - c + (with_alpha ? 1 : 0);
     for (const glm::vec4& pixel : picture.pixels) planes[c].push_back(pixel[component]);

@@ -104,6 +104,9 @@ def draw(points, front, facts, axis):
                      f"{'right offset 0,-0.9' if t > front[0][0] else 'left offset 0,0.8'}\n"
                      for t, e, text in sorted({front[0], front[len(front) // 2], front[-1]}))
     times, errors = [p[0] for p in points], [p[1] for p in points]
+    # gnuplot labels powers of ten only, and a ladder may span less than one: 1, 2, 5 of each decade.
+    decades = range(math.floor(math.log10(min(times))) - 1, math.ceil(math.log10(max(times))) + 2)
+    tics = ", ".join(f"'{m * 10.0 ** d:g}' {m * 10.0 ** d:g}" for d in decades for m in (1, 2, 5))
     script = f"""set encoding utf8
 set terminal svg size 900,600 font 'sans-serif,14' background '#ffffff'
 {block("all", points)}{block("front", front)}{labels}
@@ -115,7 +118,8 @@ set grid
 set xrange [{min(times) / 1.3:.9g}:{max(times) * 2.5:.9g}]
 set yrange [{min(errors) / 2:.9g}:{max(errors) * 2:.9g}]
 set format y '%.0e'
-set key bottom left
+set xtics ({tics})
+set key outside bottom center horizontal
 plot $all with points pt 7 ps 0.5 lc '#8a8a8a' title 'every setting', \\
   $front with linespoints pt 7 ps 0.8 lw 2 lc '#b03000' title 'Pareto front'
 """
@@ -158,5 +162,6 @@ if __name__ == "__main__":
     try:
         main()
     except (Bad, OSError, UnicodeDecodeError, csv.Error) as error:
-        print(f"plot: {error}", file=sys.stderr)
+        reason = f"{error.filename}: {error.strerror}" if isinstance(error, OSError) and error.filename else error
+        print(f"plot: {reason}", file=sys.stderr)
         sys.exit(2)

@@ -37,10 +37,10 @@ float molecule_phase(float one_minus_nu) {
   return rayleigh_phase(one_minus_nu);
 }
 
-float aerosol_phase(Atmosphere atmosphere, float one_minus_nu) {
+float aerosol_phase(Atmosphere atmosphere, float one_minus_nu, float one_plus_nu) {
   if (PHASE_DETAIL <= 1) return isotropic_phase();
   if (PHASE_DETAIL == 2) return henyey_greenstein_phase(one_minus_nu, atmosphere.mie_extinction.w);
-  return mie_phase(atmosphere, one_minus_nu);
+  return mie_phase(atmosphere, one_minus_nu, one_plus_nu);
 }
 
 struct ConstantSky {
@@ -89,7 +89,7 @@ ConstantSky constant_sky(Atmosphere atmosphere, float altitude_km, vec3 view, ve
 
   vec3 source = vec3(0.0);
   if (HAS_RAYLEIGH) source += atmosphere.rayleigh.xyz * (density.x * molecule_phase(one_minus_nu));
-  if (HAS_MIE) source += atmosphere.mie_scattering.xyz * (density.y * aerosol_phase(atmosphere, one_minus_nu));
+  if (HAS_MIE) source += atmosphere.mie_scattering.xyz * (density.y * aerosol_phase(atmosphere, one_minus_nu, one_minus_cosine(view, -sun)));
   sky.radiance = source * way * mean_transmittance(sun_near, tau + sun_far);
   sky.transmittance = exp(-tau);
   if (ground) {

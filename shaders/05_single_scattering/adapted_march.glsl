@@ -159,7 +159,7 @@ Piece piece_between(float begin, float end, int first_cell, int cells) {
 // 2. A closed-form estimate looks at a few cells of each piece. Cells at the ends that hold less than 1e-4 of the peak
 //    in every channel are left out.
 // 3. Panels share the rest by weight: evenly in scale heights where there is light, denser where its optical depth
-//    changes fast, thinner where it is below a hundredth of the peak.
+//    changes fast, thinner where it is below a few thousandths of the peak.
 // 4. Four Gauss nodes integrate each panel; what lies before a piece enters by its columns alone.
 // The whole ray's transmittance is a quadrature of its own, done only if wanted (1 otherwise).
 RayLight adapted_march(Atmosphere atmosphere, AirRay ray, ScatteringTowardsEye scattering, int view_steps, bool want_transmittance) {

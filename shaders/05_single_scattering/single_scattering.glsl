@@ -54,7 +54,8 @@ RayLight scattered_light(Atmosphere atmosphere, float altitude_km, vec3 view_dir
   result.transmittance = vec3(1.0, 1.0, 1.0);
   AirRay ray = enter_air(atmosphere, altitude_km, view_direction, sun_direction);
   if (!ray.hits_air) return result;
-  ScatteringTowardsEye scattering = scattering_towards_eye(atmosphere, one_minus_cosine(view_direction, sun_direction));
+  ScatteringTowardsEye scattering = scattering_towards_eye(atmosphere, one_minus_cosine(view_direction, sun_direction),
+                                                           one_minus_cosine(view_direction, sun_direction * -1.0));
   if (rule == kRuleAdapted) {
     result = adapted_march(atmosphere, ray, scattering, view_count, want_transmittance || ray.hits_ground);
   } else {

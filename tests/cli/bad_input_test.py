@@ -67,6 +67,7 @@ class CommandLine(WelkinCase):
 class Files(WelkinCase):
     def refuse_file(self, name, content, arguments, *words):
         path = self.directory / name
+        path.unlink(missing_ok=True)
         if content is not None:
             path.write_bytes(content)
         done = self.run_chapter(SKY, "--headless", *arguments)

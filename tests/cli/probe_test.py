@@ -109,6 +109,14 @@ class Probe(WelkinCase):
             wanted.append([rayleigh * float(row[f"IR_{c}"]) + mie * float(row[f"IM_{c}"]) + ALBEDO * float(row[f"ground1_{c}"]) for c in "rgb"])
         self.compare(rows, answers, wanted, least=80)
 
+    def test_a_backward_lobe(self):
+        """Within a degree of the antisolar point 1 + nu must come from the vectors: 2 - (1 - nu) was 44 % off here. The
+        wanted values are those of tests/reference/quadrature.cpp."""
+        rays = [["0.1", "90.77002479402253", "89.22987520597746", "180"], ["400", "117.57483048274915", "62.42506951725084", "180"]]
+        answers = self.probe(rays, "--set", "mie.phase=henyey_greenstein", "--set", "mie.g=-0.999", "--set", "ground.albedo=0")
+        self.assertLess(abs(float(answers[0]["radiance_b"]) / 2.5497 - 1), 5e-3)
+        self.assertLess(abs(float(answers[1]["radiance_r"]) / 1667.0 - 1), 5e-3)
+
     def test_ground_albedo(self):
         rows = [row for row in table("earth") if row["ray_end"] == "ground" and float(row["sun_zenith_deg"]) < 80.0][::5]
         for albedo in (0.0, 1.0):

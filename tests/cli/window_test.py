@@ -65,7 +65,8 @@ class Window(WelkinCase):
         return self.directory / line.split()[1]
 
     def quit(self, code=0):
-        self.key("Escape")
+        # Only the key's press: the window may be gone before its release.
+        self.xdotool("keydown", "--window", self.window, "Escape")
         self.assertEqual(self.program.wait(timeout=30), code, self.error_text())
 
     def headless(self, *arguments):
