@@ -217,7 +217,8 @@ Exit run_probe(const Session& session) {
 Exit run_golden(const Session& session) {
   must_have_standard_views(session);
   const std::filesystem::path directory = gpu::source_directory() / "tests" / "data" / "golden";
-  const std::string driver = session.device.candidate().driver;
+  // The device's name belongs to it: a software driver's tells the width of the processor's vectors.
+  const std::string driver = session.device.candidate().name + ", " + session.device.candidate().driver;
   Exit result = Exit::ok;
   for (const StandardView& standard : session.chapter.standard_views) {
     OtherScene other(session, standard);

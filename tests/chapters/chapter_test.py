@@ -94,6 +94,28 @@ class Cost(WelkinCase):
             self.assertEqual(names, wanted[NUMBER] + ["display"])
         self.assertLessEqual(len(names), 4)
 
+    def test_what_the_scene_lacks_is_not_there(self):
+        """Each medium left out: said to be off and why, another picture, and not a byte or a pass more."""
+        if int(NUMBER) < SKY_FROM:
+            self.skipTest("no air in this chapter")
+        whole = (ROOT / "chapters" / "scenes" / "noon.toml").read_text()
+        held = re.compile(r"^  total +(\d+) bytes$", re.M)
+        passes = re.compile(r"passes:\n(.*?)memory:", re.S)
+        reference = self.explain("--scene", "noon")
+        self.run_chapter(NUMBER, "--headless", "--size", "32x18", "--scene", "noon", "--output", "whole.exr")
+        for medium in ("rayleigh", "mie", "ozone"):
+            without = re.sub(r'\[\[medium\]\]\nkind = "%s".*?\n\n' % medium, "", whole, flags=re.S)
+            self.assertNotIn(f'kind = "{medium}"', without)
+            (self.directory / "without.toml").write_text(without)
+            text = self.explain("--scene", "without.toml")
+            self.assertRegex(text, rf"(?m)^  {medium} +off +\S")
+            self.assertRegex(reference, rf"(?m)^  {medium} +on +\S")
+            self.assertLessEqual(int(held.search(text).group(1)), int(held.search(reference).group(1)))
+            names = [[line.split()[0] for line in passes.search(t).group(1).splitlines()] for t in (text, reference)]
+            self.assertEqual(names[0], names[1])
+            self.run_chapter(NUMBER, "--headless", "--size", "32x18", "--scene", "without.toml", "--output", "without.exr")
+            self.assertNotEqual((self.directory / "without.exr").read_bytes(), (self.directory / "whole.exr").read_bytes())
+
     def test_bench_says_where(self):
         done = self.run_chapter(NUMBER, "--headless", "--size", "64x36", "--frames", "3", "--bench", "b.json")
         self.assertEqual(done.returncode, 0, done.stderr)
