@@ -251,6 +251,7 @@ Exit run_window(Session& session) {
     if (++index == session.options.frames) break;
   }
   // [/loop]
+  for (const gpu::PassTime& pass : loop.state.times) fmt::print("  {:<20} {:>10.3f} ms\n", pass.name, pass.milliseconds);
   if (!session.options.output.empty()) fmt::print("wrote {}\n", loop.save(session.options.output));
   return Exit::ok;
 }

@@ -28,6 +28,8 @@ class Timer {
   const std::vector<std::string>& names() const { return names_; }
 
  private:
+  void stamp(VkCommandBuffer commands, uint32_t query);
+
   const Device* device_;
   QueryPool queries_;
   std::vector<std::string> names_;

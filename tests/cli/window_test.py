@@ -144,6 +144,13 @@ class Window(WelkinCase):
         self.assertEqual(inverted, [bytes(255 - value for value in row) for row in wanted], "the new one is in use")
         self.quit()
 
+    def test_times_are_those_of_the_passes(self):
+        """A march of a thousand instructions a pixel takes longer than the display of the same pixels, in a window too."""
+        self.open("05_single_scattering", "--size", "160x90", "--scene", "noon", "--frames", "6")
+        self.assertEqual(self.program.wait(timeout=60), 0, self.error_text())
+        times = {line.split()[0]: float(line.split()[1]) for line in self.program.stdout if line.rstrip().endswith(" ms")}
+        self.assertGreater(times["march"], 3 * times["display"])
+
     def test_lost_display_is_said(self):
         self.open("02_window", "--size", "320x200")
         self.server.kill()
