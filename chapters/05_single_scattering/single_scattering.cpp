@@ -68,9 +68,11 @@ SingleScattering::SingleScattering(const app::Context& context)
 
 // [rebuild]
 gpu::Specialization SingleScattering::variant() const {
-  const AirVariant air = air_variant(context_.scene);
-  return {air.rayleigh, air.mie, air.ozone, air.mie_phase, context_.scene.sun.disc, static_cast<uint32_t>(context_.settings.integer("rule")),
-          static_cast<uint32_t>(context_.settings.integer("light.steps"))};
+  gpu::Specialization constants = specialization(air_variant(context_.scene));
+  constants.push_back(context_.scene.sun.disc);
+  constants.push_back(static_cast<uint32_t>(context_.settings.integer("rule")));
+  constants.push_back(static_cast<uint32_t>(context_.settings.integer("light.steps")));
+  return constants;
 }
 
 void SingleScattering::rebuild() {

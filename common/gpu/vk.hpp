@@ -44,7 +44,6 @@ using ImageHandle = Handle<VkImage, vkDestroyImage>;
 using ImageView = Handle<VkImageView, vkDestroyImageView>;
 using BufferHandle = Handle<VkBuffer, vkDestroyBuffer>;
 using Memory = Handle<VkDeviceMemory, vkFreeMemory>;
-using Sampler = Handle<VkSampler, vkDestroySampler>;
 using ShaderModule = Handle<VkShaderModule, vkDestroyShaderModule>;
 using SetLayout = Handle<VkDescriptorSetLayout, vkDestroyDescriptorSetLayout>;
 using DescriptorPool = Handle<VkDescriptorPool, vkDestroyDescriptorPool>;

@@ -39,7 +39,7 @@ float molecule_phase(float one_minus_nu) {
 
 float aerosol_phase(Atmosphere atmosphere, float one_minus_nu, float one_plus_nu) {
   if (PHASE_DETAIL <= 1) return isotropic_phase();
-  if (PHASE_DETAIL == 2) return henyey_greenstein_phase(one_minus_nu, atmosphere.mie_extinction.w);
+  if (PHASE_DETAIL == 2) return henyey_greenstein_lobe(one_minus_nu, one_plus_nu, atmosphere.mie_extinction.w);
   return mie_phase(atmosphere, one_minus_nu, one_plus_nu);
 }
 

@@ -30,18 +30,12 @@ vec3 extinction(Atmosphere atmosphere, vec3 density) {
   return vec3(atmosphere.rayleigh) * density.x + vec3(atmosphere.mie_extinction) * density.y + vec3(atmosphere.ozone) * density.z;
 }
 
-// A lobe that looks backward is a forward one seen from behind, p(nu, g) = p(-nu, -g), and needs the digits of 1 + nu where
-// a forward lobe needs those of 1 - nu: both come from the vectors, neither from the other.
 float mie_phase(Atmosphere atmosphere, float one_minus_nu, float one_plus_nu) {
   float g = atmosphere.mie_extinction.w;
-  float from_peak = g >= 0.0 ? one_minus_nu : one_plus_nu;
-  if (MIE_PHASE == 1) return cornette_shanks_phase(from_peak, abs(g));
-  if (MIE_PHASE == 2) return draine_phase(from_peak, abs(g), atmosphere.sun.w);
-  float lobe = henyey_greenstein_phase(from_peak, abs(g));
-  if (MIE_PHASE != 3) return lobe;
-  float second_g = atmosphere.ground.w;
-  float second = henyey_greenstein_phase(second_g >= 0.0 ? one_minus_nu : one_plus_nu, abs(second_g));
-  return lobe * (1.0 - atmosphere.sun.w) + second * atmosphere.sun.w;
+  if (MIE_PHASE == 1) return cornette_shanks_phase(g >= 0.0 ? one_minus_nu : one_plus_nu, abs(g));
+  if (MIE_PHASE == 2) return draine_phase(g >= 0.0 ? one_minus_nu : one_plus_nu, abs(g), atmosphere.sun.w);
+  if (MIE_PHASE == 3) return double_hg_phase(one_minus_nu, one_plus_nu, g, atmosphere.ground.w, atmosphere.sun.w);
+  return henyey_greenstein_lobe(one_minus_nu, one_plus_nu, g);
 }
 
 // Scattering coefficient times phase function, 1/(km sr), of (rayleigh, mie) at unit density.

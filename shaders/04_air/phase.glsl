@@ -51,6 +51,12 @@ float henyey_greenstein_phase_naive(float nu, float g) {
 }
 // [/henyey_greenstein]
 
+// The same for a lobe that may look backward, p(nu, g) = p(-nu, -g): it needs the digits of 1 + nu where a forward lobe
+// needs those of 1 - nu. Both come from the vectors, neither from the other.
+float henyey_greenstein_lobe(float one_minus_nu, float one_plus_nu, float g) {
+  return henyey_greenstein_phase(g >= 0.0 ? one_minus_nu : one_plus_nu, abs(g));
+}
+
 // [draine]
 // Draine 2003: Henyey-Greenstein times (1 + alpha nu^2) / (1 + alpha (1 + 2 g^2) / 3).
 // alpha = 0: Henyey-Greenstein; alpha = 1: Cornette-Shanks; g = 0, alpha = 1: Rayleigh.
@@ -65,10 +71,10 @@ float cornette_shanks_phase(float one_minus_nu, float g) {
 }
 
 // Two Henyey-Greenstein lobes, the second with weight in [0, 1]. Both have 1 - g^2 above.
-float double_hg_phase(float one_minus_nu, float g, float second_g, float second_weight) {
+float double_hg_phase(float one_minus_nu, float one_plus_nu, float g, float second_g, float second_weight) {
   // Not mix(): a driver may compute a + w (b - a), which for w near 1 and a far larger than b has lost b.
-  return henyey_greenstein_phase(one_minus_nu, g) * (1.0 - second_weight) +
-         henyey_greenstein_phase(one_minus_nu, second_g) * second_weight;
+  return henyey_greenstein_lobe(one_minus_nu, one_plus_nu, g) * (1.0 - second_weight) +
+         henyey_greenstein_lobe(one_minus_nu, one_plus_nu, second_g) * second_weight;
 }
 
 // Water droplets of 5 to 50 um diameter: a Henyey-Greenstein peak and a Draine body, fitted to Mie's series by

@@ -4,10 +4,7 @@
 
 // [variant]
 // What the scene lacks is not there: these are known when the pipeline is made, and the compiler drops the rest.
-layout(constant_id = 0) const bool HAS_RAYLEIGH = true;
-layout(constant_id = 1) const bool HAS_MIE = true;
-layout(constant_id = 2) const bool HAS_OZONE = true;
-layout(constant_id = 3) const int MIE_PHASE = 1;
+#include "04_air/variant.glsl"  // constants 0 to 3: which constituents there are, and the aerosol's phase function
 layout(constant_id = 4) const bool SUN_DISC = true;
 layout(constant_id = 5) const int RULE = 5;
 layout(constant_id = 6) const int LIGHT_STEPS = 8;  // the innermost loop: its length known, a compiler unrolls it

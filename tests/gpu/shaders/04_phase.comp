@@ -20,7 +20,7 @@ void main() {
   outputs.values[b + 2u] = henyey_greenstein_phase(x, g);
   outputs.values[b + 3u] = cornette_shanks_phase(x, g);
   outputs.values[b + 4u] = draine_phase(x, g, alpha);
-  outputs.values[b + 5u] = double_hg_phase(x, g, second_g, weight);
+  outputs.values[b + 5u] = double_hg_phase(x, 2.0 - x, g, second_g, weight);
   outputs.values[b + 6u] = droplet_phase(x, diameter);
   outputs.values[b + 7u] = henyey_greenstein_phase_naive(1.0 - x, g);
 }
