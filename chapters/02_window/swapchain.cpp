@@ -89,10 +89,7 @@ void WindowSwapchain::create(VkExtent2D framebuffer, VkSwapchainKHR old) {
 // [/create]
 
 void WindowSwapchain::recreate(VkExtent2D framebuffer) {
-  wait_for_all_frames();
-  // Presentation may still wait on the old images' semaphores; the queue being idle is what tells us it does not.
-  // This is a resize, not a frame.
-  gpu::check(vkQueueWaitIdle(device_.queue()), "vkQueueWaitIdle");
+  wait_for_presentation();
   const gpu::Swapchain old = std::move(swapchain_);
   views_.clear();
   create(framebuffer, old);
@@ -101,6 +98,12 @@ void WindowSwapchain::recreate(VkExtent2D framebuffer) {
 void WindowSwapchain::wait_for_all_frames() const {
   const VkSemaphoreWaitInfo info{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO, .semaphoreCount = 1, .pSemaphores = timeline_.address(), .pValues = &submitted_value_};
   gpu::check(vkWaitSemaphores(device_, &info, UINT64_MAX), "vkWaitSemaphores");
+}
+
+void WindowSwapchain::wait_for_presentation() const noexcept {
+  // The timeline tells of our commands only. Presentation may still wait on the images' semaphores; the queue being idle
+  // is what says that it does not. A lost device ends the wait too: whoever uses it next hears of that.
+  vkQueueWaitIdle(device_.queue());
 }
 
 // [begin_frame]

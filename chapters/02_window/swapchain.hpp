@@ -26,6 +26,8 @@ class WindowSwapchain {
   // Waits for every frame in flight, then makes the swapchain anew. A framebuffer of zero size must not get here.
   void recreate(VkExtent2D framebuffer);
   void wait_for_all_frames() const;
+  // Waits for their presentation too: before anything it uses is destroyed, never in a frame.
+  void wait_for_presentation() const noexcept;
 
   // Waits until this slot's earlier frame is finished and takes the next image. Returns nullptr if the swapchain is out
   // of date: recreate, then try again.
