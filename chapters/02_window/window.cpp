@@ -100,7 +100,7 @@ struct Loop {
   Window& window;
   WindowSwapchain swapchain;
   std::unique_ptr<Program> program;
-  DisplayPass display;
+  std::unique_ptr<DisplaySystem> display;
   PresentPass present;
   Targets targets;
   Panel panel;
@@ -109,16 +109,16 @@ struct Loop {
   gpu::CommandPool pool;  // for screenshots
 
   Loop(Session& s, Window& w, VkSurfaceKHR surface)
-      : session(s), window(w), swapchain(s.device, surface, framebuffer_size(w.handle)), program(s.make_program()), display(s.device),
+      : session(s), window(w), swapchain(s.device, surface, framebuffer_size(w.handle)), program(s.make_program()), display(make_display_system(s.context, s.chapter)),
         present(s.device, swapchain.format()), targets(create_targets(s.device, swapchain.size())),
         panel(w.handle, s.instance, s.device, swapchain), pose(s.first_pose()), pool(gpu::create_command_pool(s.device)) {
     state.time_s = s.options.time_s;
     use_targets();
   }
-  ~Loop() { swapchain.wait_for_all_frames(); }
+  ~Loop() { swapchain.wait_for_presentation(); }
 
   void use_targets() {
-    display.set_images(session.device, targets.picture, targets.displayed);
+    display->set_images(targets.picture, targets.displayed);
     present.set_image(session.device, targets.displayed);
     program->set_target(targets.picture);
   }
@@ -149,11 +149,15 @@ struct Loop {
     session.settings = std::move(settings);
     pose = pose_of(session.scene.view(""));
     state.time_s = 0.0;
-    program->rebuild();
+    rebuild();
   }
 
   void on_key(int key);
-  bool draw(uint32_t index);
+  bool draw(uint32_t index, double seconds);
+  void rebuild() {
+    program->rebuild();
+    display->rebuild();
+  }
 };
 
 void Loop::on_key(int key) {
@@ -180,7 +184,7 @@ void Loop::on_key(int key) {
       state.message = gpu::recompile_shaders(session.chapter.number);
       if (!state.message.empty()) break;  // the old pipeline stays
       swapchain.wait_for_all_frames();
-      program->rebuild();
+      rebuild();
       state.message = "shaders reloaded";
       break;
     }
@@ -188,7 +192,7 @@ void Loop::on_key(int key) {
   }
 }
 
-bool Loop::draw(uint32_t index) {
+bool Loop::draw(uint32_t index, double seconds) {
   uint32_t image = 0;
   FrameSlot* slot = swapchain.begin_frame(image);
   if (slot == nullptr) return false;
@@ -202,11 +206,11 @@ bool Loop::draw(uint32_t index) {
     const auto rebuilds = [&](const std::string& name) { return session.settings.knob(name).rebuilds; };
     if (std::any_of(state.changed.begin(), state.changed.end(), rebuilds)) {
       swapchain.wait_for_all_frames();
-      program->rebuild();
+      rebuild();
     }
   }
   gpu::begin_commands(slot->commands);
-  record_frame(session.context, session.chapter, *program, display, targets, {slot->commands, targets.picture, camera, slot->timer, index, session.options.seed});
+  record_frame(session.context, *program, *display, targets, {slot->commands, targets.picture, camera, slot->timer, index, session.options.seed, seconds});
   present.record(slot->commands, targets.displayed, swapchain.image(image), swapchain.view(image), size);
   panel.record(slot->commands, image);
   gpu::end_commands(slot->commands);
@@ -241,10 +245,10 @@ Exit run_window(Session& session) {
         loop.state.message = error.what();
       }
     }
-    const double now = glfwGetTime();
-    move_camera(window, loop.panel, loop.state, loop.pose, now - last, session.scene.planet.ground_radius_km);
+    const double now = glfwGetTime(), seconds = now - last;
+    move_camera(window, loop.panel, loop.state, loop.pose, seconds, session.scene.planet.ground_radius_km);
     last = now;
-    if (!loop.draw(index)) {
+    if (!loop.draw(index, index == 0 ? 0.0 : seconds)) {
       window.resized = true;
       continue;
     }

@@ -89,11 +89,9 @@ void SingleScattering::set_target(const gpu::Image& target) { gpu::write_storage
 void SingleScattering::update_air(VkCommandBuffer commands) const {
   interop::Atmosphere air = make_atmosphere(context_.scene);
   if (context_.inject == "wrong-constant") air.rayleigh.x *= 1.1f;
-  // vkCmdUpdateBuffer is a transfer; which of the finer stages it belongs to, drivers and layers do not agree on.
-  constexpr gpu::Use written{VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT};
-  gpu::buffer_barrier(commands, air_.handle, {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT}, written);
+  gpu::buffer_barrier(commands, air_.handle, {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT}, gpu::kUpdate);
   vkCmdUpdateBuffer(commands, air_.handle, 0, sizeof air, &air);
-  gpu::buffer_barrier(commands, air_.handle, written, gpu::kUniformRead);
+  gpu::buffer_barrier(commands, air_.handle, gpu::kUpdate, gpu::kUniformRead);
 }
 
 // [draw]

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -42,6 +43,7 @@ struct Frame {
   gpu::Timer& timer;
   uint32_t index;
   uint32_t seed;
+  double seconds;  // since the frame before; 0 for the first
 };
 
 // A ray of --probe, in degrees as in the file; relative azimuth 0 looks towards the sun.
@@ -50,6 +52,7 @@ struct ProbeRay {
 };
 struct ProbeResult {
   glm::dvec3 radiance, transmittance;
+  glm::dvec3 standard_error{0.0};  // of the radiance, where the chapter is stochastic
 };
 
 // A running chapter.
@@ -63,6 +66,28 @@ struct Program {
   virtual void rebuild() = 0;
   // Radiance and transmittance along rays, in the order given. Chapters without a sky have none.
   virtual std::vector<ProbeResult> probe(std::span<const ProbeRay> rays);
+  // What --explain prints beside passes and bytes: whole lines, or nothing.
+  virtual std::string explain() const { return {}; }
+  // An intermediate image for --dump: rgba32f or rgba16f, 2-D, left in layout GENERAL. nullptr: there is none of this name.
+  virtual const gpu::Image* image(const std::string& name) const;
+};
+
+// Turns the linear picture into 8 bits. The framework's own shows values raw or exposed, until chapter 06 teaches better.
+struct DisplaySystem {
+  virtual ~DisplaySystem() = default;
+  // Before the first draw and after every resize, when no frame is in flight. Both are storage images in layout GENERAL.
+  virtual void set_images(const gpu::Image& picture, const gpu::Image& displayed) = 0;
+  // Records its timed passes. The picture may be read, and `displayed` written, by compute without a barrier.
+  virtual void draw(const Frame& frame) = 0;
+  virtual void rebuild() = 0;  // as Program::rebuild
+};
+
+// An unbiased method of a lower chapter that a method is measured against, with knobs of its own.
+struct Truth {
+  std::vector<Knob> knobs;
+  std::vector<std::pair<std::string, std::string>> settings;
+  std::function<std::unique_ptr<Program>(const Context&)> make;
+  uint32_t frames = 1;  // it accumulates over this many
 };
 
 struct Session;
@@ -82,12 +107,16 @@ struct Chapter {
   std::string try_next;   // a command worth typing after the first picture
   Display display = Display::exposed;
   bool sky = false;       // has scene knobs (mie.g, sun.zenith_deg, …)
+  bool stochastic = false;  // a probe's radiance has a standard error
+  std::vector<std::string> images;  // names Program::image knows
   std::vector<Knob> knobs;
   std::vector<std::pair<std::string, std::string>> reference;  // knob values the sweep's reference is drawn with
+  std::optional<Truth> truth;  // the sweep's reference instead, if there is one
   std::string default_scene = "noon";
   std::vector<StandardView> standard_views;
   std::function<std::unique_ptr<WindowSystem>()> window;  // none: the chapter draws into files only
   std::function<std::unique_ptr<Program>(const Context&)> make;
+  std::function<std::unique_ptr<DisplaySystem>(const Context&)> make_display;  // none: as `display` says
 };
 
 // main() of every chapter: command line, device, and whichever of picture, window or instrument was asked for.

@@ -82,7 +82,8 @@ bool parse_options(int argc, char** argv, const Chapter& chapter, Options& optio
   cli.add_option("--seed", seed_text, "Seed of everything random [1]")->type_name("N")->group("picture");
   cli.add_option("--time", time_text, "Seconds after the scene's moment: the sun moves 15 degrees an hour [0]")->type_name("T")->group("picture");
   cli.add_option("--output", options.output, "Write the (last) picture: .png displayed, .exr linear [out/" + chapter.name + ".png]")->type_name("FILE")->group("output");
-  cli.add_option("--dump", dump, "Write 'picture' (.exr), 'displayed' (.png) or 'knobs' (.json)")->type_name("WHAT FILE")->expected(2)->group("output");
+  cli.add_option("--dump", dump, "Write 'picture' (.exr), 'displayed' (.png), 'knobs' (.json)" +
+                                 (chapter.images.empty() ? std::string() : fmt::format(", or an image (.exr): {}", fmt::join(chapter.images, ", "))))->type_name("WHAT FILE")->expected(2)->group("output");
   cli.add_flag("--explain", options.explain, "Say which effects are simulated, why, with passes, bytes and time")->group("output");
   cli.add_option("--bench", options.bench, "Measure repeated frames and write JSON")->type_name("FILE.json")->group("measure");
   cli.add_option("--sweep", options.sweep, "Measure error against time over the knobs' ladders and write CSV")->type_name("FILE.csv")->group("measure");
@@ -90,7 +91,7 @@ bool parse_options(int argc, char** argv, const Chapter& chapter, Options& optio
   cli.add_option("--probe-out", options.probe_out, "Where the rays' radiance and transmittance go")->type_name("FILE.csv")->group("measure");
   cli.add_option("--against", options.against, "Print the errors of the picture against this one")->type_name("FILE.exr")->group("measure");
   cli.add_option("--golden", golden, "Compare the standard views with the goldens, or write them anew")->type_name("check|update")->group("tests");
-  cli.add_option("--inject", options.inject, "Plant a fault: nan, missing-barrier, wrong-constant, missing-feature")->type_name("FAULT")->group("tests");
+  cli.add_option("--inject", options.inject, "Plant a fault: nan, missing-barrier, graph-barrier, wrong-constant, missing-feature")->type_name("FAULT")->group("tests");
 
   try {
     cli.parse(argc, argv);
@@ -130,12 +131,14 @@ bool parse_options(int argc, char** argv, const Chapter& chapter, Options& optio
   if (cli.count("--golden") > 0)
     options.golden = parse_choice<Golden>("--golden", golden, {{"check", Golden::check}, {"update", Golden::update}});
   if (cli.count("--inject") > 0)
-    parse_choice<int>("--inject", options.inject, {{"nan", 0}, {"missing-barrier", 0}, {"wrong-constant", 0}, {"missing-feature", 0}});
+    parse_choice<int>("--inject", options.inject, {{"nan", 0}, {"missing-barrier", 0}, {"graph-barrier", 0}, {"wrong-constant", 0}, {"missing-feature", 0}});
   for (const std::string& assignment : set) options.set.push_back(split_assignment(assignment));
   if (!dump.empty()) {
-    parse_choice<int>("--dump", dump[0], {{"picture", 0}, {"displayed", 0}, {"knobs", 0}});
+    std::vector<std::pair<std::string, int>> known{{"picture", 0}, {"displayed", 0}, {"knobs", 0}};
+    for (const std::string& image : chapter.images) known.emplace_back(image, 0);
+    parse_choice<int>("--dump", dump[0], known);
     options.dump_what = dump[0], options.dump_file = dump[1];
-    const std::string extension = dump[0] == "picture" ? ".exr" : dump[0] == "displayed" ? ".png" : ".json";
+    const std::string extension = dump[0] == "knobs" ? ".json" : dump[0] == "displayed" ? ".png" : ".exr";
     if (!options.dump_file.ends_with(extension)) fail("--dump {} {}: the name must end in {}", dump[0], dump[1], extension);
   }
   // Where results go is looked at before the work is done, not after.

@@ -104,6 +104,33 @@ std::vector<std::vector<double>> ordered_by_pipeline(std::vector<std::vector<dou
   return ladder;
 }
 
+// What the errors of a sweep are errors against: the truth of a lower chapter, or this program at its best.
+Image draw_reference(OtherScene& other, Program& program, VkExtent2D size) {
+  const Session& session = other.session;
+  const CameraPose pose = session.first_pose();
+  if (!session.chapter.truth) {
+    for (const auto& [name, text] : session.chapter.reference) other.settings.set(name, text);
+    program.rebuild();
+    Renderer renderer(session.context, session.chapter, program, size);
+    renderer.draw(pose, session.options.time_s, session.options.seed, 0);
+    return renderer.picture();
+  }
+  const Truth& truth = *session.chapter.truth;
+  Settings settings(truth.knobs);
+  for (const auto& [name, text] : truth.settings) settings.set(name, text);
+  const Context context{session.device, other.scene, settings, session.options.inject};
+  const std::unique_ptr<Program> tracer = truth.make(context);
+  Renderer renderer(context, session.chapter, *tracer, size);
+  for (uint32_t i = 0; i < truth.frames; ++i) renderer.draw(pose, session.options.time_s, session.options.seed, i);
+  return renderer.picture();
+}
+
+std::string describe_reference(const Chapter& chapter) {
+  std::string text = chapter.truth ? fmt::format("path tracer, {} frames", chapter.truth->frames) : "";
+  for (const auto& [name, value] : chapter.truth ? chapter.truth->settings : chapter.reference) text += (text.empty() ? "" : " ") + name + "=" + value;
+  return text;
+}
+
 void must_have_standard_views(const Session& session) {
   if (session.chapter.standard_views.empty()) fail("{} has no standard views to measure", session.chapter.name);
 }
@@ -150,15 +177,13 @@ Exit run_sweep(const Session& session) {
     const float exposure = static_cast<float>(kBaseExposure * std::exp2(other.scene.post.exposure_ev));
     const auto display = [&](const glm::vec3& value) { return image::display(value, exposure); };
 
-    for (const auto& [name, text] : session.chapter.reference) other.settings.set(name, text);
-    program->rebuild();
-    renderer.draw(pose, session.options.time_s, session.options.seed, 0);
-    const Image reference = renderer.picture();
+    const Image reference = draw_reference(other, *program, size);
+    program->set_target(renderer.target());
 
     std::vector<double> compiled;
     for (const std::vector<double>& values : ladder) {
       other.settings = measure::with_values(base, values);
-      if (pipeline_values(values, base) != compiled || compiled.empty()) program->rebuild();
+      if (pipeline_values(values, base) != compiled || compiled.empty()) renderer.rebuild();
       compiled = pipeline_values(values, base);
       const Timings timings = time_frames(other.session, renderer, pose, 1, device.software ? 3 : kRepeats);
       measure::SweepRow row{.view = standard.scene + "/" + standard.view, .gpu_ms = timings.gpu, .wall_ms = timings.wall,
@@ -170,11 +195,9 @@ Exit run_sweep(const Session& session) {
       progress.step();
     }
   }
-  std::string reference;
-  for (const auto& [name, text] : session.chapter.reference) reference += (reference.empty() ? "" : " ") + name + "=" + text;
   measure::write_sweep_csv(session.options.sweep, session.chapter.knobs, rows,
                            {session.chapter.name, "standard views", device.name, device.driver, device.software, size.width,
-                            size.height, reference, now_utc()});
+                            size.height, describe_reference(session.chapter), now_utc()});
   fmt::print("{} settings x {} views -> {}\n", rungs, session.chapter.standard_views.size(), session.options.sweep);
   return Exit::ok;
 }
@@ -199,11 +222,14 @@ Exit run_probe(const Session& session) {
   const std::vector<ProbeResult> results = session.make_program()->probe(rays);
   std::vector<std::string> names = inputs;
   for (const char* name : {"radiance_r", "radiance_g", "radiance_b", "transmittance_r", "transmittance_g", "transmittance_b"}) names.push_back(name);
+  if (session.chapter.stochastic)
+    for (const char* name : {"standard_error_r", "standard_error_g", "standard_error_b"}) names.push_back(name);
   std::vector<std::vector<std::string>> rows(table.rows);
   for (size_t row = 0; row < table.rows; ++row) {
     for (const std::string& name : inputs) rows[row].push_back(table.fields[table.index(name)][row]);  // as they were written
     for (int c = 0; c < 3; ++c) rows[row].push_back(fmt::format("{:.9e}", results[row].radiance[c]));
     for (int c = 0; c < 3; ++c) rows[row].push_back(fmt::format("{:.9e}", results[row].transmittance[c]));
+    for (int c = 0; session.chapter.stochastic && c < 3; ++c) rows[row].push_back(fmt::format("{:.9e}", results[row].standard_error[c]));
   }
   write_csv(session.options.probe_out,
             {fmt::format("{} scene {}, {} ({})", session.chapter.name, session.scene.name, session.device.candidate().name, session.device.candidate().driver),

@@ -36,12 +36,13 @@ void print_times(const Session& session, Renderer& renderer) {
   fmt::print("  {:<20} {:>10.3f} ms   {} held\n", "total", total, measure::human_bytes(session.device.allocated_bytes()));
 }
 
-void explain(const Session& session, Renderer& renderer, uint64_t allocations_by_later_frames) {
+void explain(const Session& session, const Program& program, Renderer& renderer, uint64_t allocations_by_later_frames) {
   fmt::print("effects of scene {}:\n", session.scene.name);
   if (!session.chapter.sky) fmt::print("  none: this chapter draws no air\n");
   else for (const Effect& effect : effects(session.scene)) fmt::print("  {:<14} {:<4} {}\n", effect.name, effect.on ? "on" : "off", effect.why);
   fmt::print("passes:\n");
   for (const gpu::PassTime& pass : renderer.pass_times()) fmt::print("  {:<20} {:>10.3f} ms\n", pass.name, pass.milliseconds);
+  fmt::print("{}", program.explain());
   fmt::print("memory:\n");
   for (const gpu::Allocation& allocation : session.device.allocations()) fmt::print("  {:<20} {:>12} bytes\n", allocation.name, allocation.bytes);
   fmt::print("  {:<20} {:>12} bytes\nallocations by frames after the first: {}\n", "total", session.device.allocated_bytes(), allocations_by_later_frames);
@@ -82,11 +83,13 @@ Exit run_picture(const Session& session) {
   const size_t not_finite = count_not_finite(picture);
   if (options.dump_what == "picture") image::write_exr(options.dump_file, picture);
   if (options.dump_what == "displayed") image::write_png8(options.dump_file, renderer.displayed());
+  if (const gpu::Image* image = program->image(options.dump_what))
+    image::write_exr(options.dump_file, read_picture(session.device, gpu::create_command_pool(session.device), *image));
   if (writes) {
     if (options.output.empty()) std::filesystem::create_directories("out");
     write_output(session, file, pose, picture, renderer.displayed());
   }
-  if (options.explain) explain(session, renderer, allocations);
+  if (options.explain) explain(session, *program, renderer, allocations);
   else print_times(session, renderer);
   if (writes) fmt::print("wrote {}\n", file);
   if (writes && options.output.empty() && !session.chapter.try_next.empty()) fmt::print("next: {}\n", session.chapter.try_next);

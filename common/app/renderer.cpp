@@ -1,12 +1,16 @@
 // Frame recording and readback. See renderer.hpp.
 #include "common/app/renderer.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <glm/gtc/packing.hpp>
 #include <limits>
 
 namespace welkin::app {
 namespace {
+
+constexpr double kHeadlessFrameSeconds = 1.0 / 60.0;  // a file has no clock
 
 struct DisplayPush {
   int32_t size[2];
@@ -27,24 +31,45 @@ void read_back(const gpu::Device& device, VkCommandPool pool, const gpu::Image& 
   std::memcpy(out.data(), buffer.mapped, out.size() * sizeof(T));
 }
 
+class PlainDisplay : public DisplaySystem {
+ public:
+  PlainDisplay(const Context& context, Display mode) : context_(context), mode_(mode) { rebuild(); }
+
+  void set_images(const gpu::Image& picture, const gpu::Image& displayed) override {
+    gpu::write_storage_image(context_.device, set_, 0, picture);
+    gpu::write_storage_image(context_.device, set_, 1, displayed);
+  }
+
+  void draw(const Frame& frame) override {
+    const VkExtent2D size = frame.target.size;
+    const DisplayPush push{{static_cast<int32_t>(size.width), static_cast<int32_t>(size.height)},
+                           static_cast<float>(kBaseExposure * std::exp2(context_.scene.post.exposure_ev)),
+                           mode_ == Display::exposed ? 1 : 0};
+    const gpu::TimedPass pass(frame.timer, frame.commands, "display");
+    gpu::dispatch_over(frame.commands, pipeline_, set_, push, size);
+  }
+
+  void rebuild() override {
+    pipeline_ = gpu::create_compute_pipeline(context_.device, "app/display.comp", {{0}, {1}}, sizeof(DisplayPush));
+    if (set_.handle == VK_NULL_HANDLE) set_ = gpu::create_descriptor_set(context_.device, pipeline_.set_layout, pipeline_.bindings);
+  }
+
+ private:
+  const Context context_;
+  const Display mode_;
+  gpu::ComputePipeline pipeline_;
+  gpu::DescriptorSet set_;
+};
+
 }  // namespace
 
 std::vector<ProbeResult> Program::probe(std::span<const ProbeRay>) { fail("--probe: this chapter has no sky to ask; chapters from 04 on do"); }
 
-DisplayPass::DisplayPass(const gpu::Device& device)
-    : pipeline_(gpu::create_compute_pipeline(device, "app/display.comp", {{0}, {1}}, sizeof(DisplayPush))),
-      set_(gpu::create_descriptor_set(device, pipeline_.set_layout, pipeline_.bindings)) {}
+const gpu::Image* Program::image(const std::string&) const { return nullptr; }
 
-void DisplayPass::set_images(const gpu::Device& device, const gpu::Image& picture, const gpu::Image& displayed) {
-  gpu::write_storage_image(device, set_, 0, picture);
-  gpu::write_storage_image(device, set_, 1, displayed);
-}
-
-void DisplayPass::record(VkCommandBuffer commands, VkExtent2D size, Display mode, double exposure_ev) const {
-  const DisplayPush push{{static_cast<int32_t>(size.width), static_cast<int32_t>(size.height)},
-                         static_cast<float>(kBaseExposure * std::exp2(exposure_ev)),
-                         mode == Display::exposed ? 1 : 0};
-  gpu::dispatch_over(commands, pipeline_, set_, push, size);
+std::unique_ptr<DisplaySystem> make_display_system(const Context& context, const Chapter& chapter) {
+  if (chapter.make_display) return chapter.make_display(context);
+  return std::make_unique<PlainDisplay>(context, chapter.display);
 }
 
 Targets create_targets(const gpu::Device& device, VkExtent2D size) {
@@ -53,8 +78,7 @@ Targets create_targets(const gpu::Device& device, VkExtent2D size) {
 }
 
 // [frame]
-void record_frame(const Context& context, const Chapter& chapter, Program& program, const DisplayPass& display,
-                  const Targets& targets, const Frame& frame) {
+void record_frame(const Context& context, Program& program, DisplaySystem& display, const Targets& targets, const Frame& frame) {
   frame.timer.begin_frame(frame.commands);
   program.draw(frame);
   // The display pass reads what the chapter wrote; leaving this out is the fault the synchronization test plants.
@@ -63,28 +87,27 @@ void record_frame(const Context& context, const Chapter& chapter, Program& progr
   // The old content of the displayed picture is not needed, but whoever read it last must have finished.
   constexpr gpu::Use read_before{VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_COPY_BIT};
   gpu::image_barrier(frame.commands, targets.displayed.handle, read_before, gpu::kComputeWrite);
-  const gpu::TimedPass pass(frame.timer, frame.commands, "display");
-  display.record(frame.commands, targets.picture.size, chapter.display, context.scene.post.exposure_ev);
+  display.draw(frame);
 }
 // [/frame]
 
 Renderer::Renderer(const Context& context, const Chapter& chapter, Program& program, VkExtent2D size)
     : context_(context),
-      chapter_(chapter),
       program_(program),
       pool_(gpu::create_command_pool(context.device)),
       commands_(gpu::allocate_commands(context.device, pool_)),
       timer_(context.device),
-      display_(context.device),
+      display_(make_display_system(context, chapter)),
       targets_(create_targets(context.device, size)) {
-  display_.set_images(context.device, targets_.picture, targets_.displayed);
+  display_->set_images(targets_.picture, targets_.displayed);
   program_.set_target(targets_.picture);
 }
 
 void Renderer::draw(const CameraPose& pose, double time_s, uint32_t seed, uint32_t index) {
   const CameraRays camera = camera_rays(pose, context_.scene, time_s, {size().width, size().height}, seed, index);
   gpu::begin_commands(commands_);
-  record_frame(context_, chapter_, program_, display_, targets_, {commands_, targets_.picture, camera, timer_, index, seed});
+  const double seconds = index == 0 ? 0.0 : kHeadlessFrameSeconds;
+  record_frame(context_, program_, *display_, targets_, {commands_, targets_.picture, camera, timer_, index, seed, seconds});
   gpu::end_commands(commands_);
   gpu::submit_and_wait(context_.device, commands_);
 }
@@ -92,7 +115,13 @@ void Renderer::draw(const CameraPose& pose, double time_s, uint32_t seed, uint32
 Image read_picture(const gpu::Device& device, VkCommandPool pool, const gpu::Image& image) {
   Image picture{image.size.width, image.size.height, {}};
   picture.pixels.resize(size_t{image.size.width} * image.size.height);
-  read_back(device, pool, image, picture.pixels);
+  if (image.format != VK_FORMAT_R16G16B16A16_SFLOAT) {
+    read_back(device, pool, image, picture.pixels);
+    return picture;
+  }
+  std::vector<uint64_t> halves(picture.pixels.size());
+  read_back(device, pool, image, halves);
+  std::transform(halves.begin(), halves.end(), picture.pixels.begin(), [](uint64_t four) { return glm::unpackHalf4x16(four); });
   return picture;
 }
 

@@ -9,17 +9,8 @@
 
 namespace welkin::app {
 
-// The pass that turns the linear target into 8 bits. See shaders/app/display.comp.
-class DisplayPass {
- public:
-  explicit DisplayPass(const gpu::Device& device);
-  void set_images(const gpu::Device& device, const gpu::Image& picture, const gpu::Image& displayed);
-  void record(VkCommandBuffer commands, VkExtent2D size, Display mode, double exposure_ev) const;
-
- private:
-  gpu::ComputePipeline pipeline_;
-  gpu::DescriptorSet set_;
-};
+// The chapter's way to 8 bits, or the framework's. See shaders/app/display.comp.
+std::unique_ptr<DisplaySystem> make_display_system(const Context& context, const Chapter& chapter);
 
 // Exposure factor at 0 stops: a clear noon sky of about 0.03 per unit solar irradiance comes out at middle grey and above.
 inline constexpr double kBaseExposure = 24.0;
@@ -33,8 +24,7 @@ Targets create_targets(const gpu::Device& device, VkExtent2D size);
 
 // Records a whole frame: the chapter's passes into targets.picture, then the display pass into targets.displayed. Both
 // end in layout GENERAL, last written or read by compute.
-void record_frame(const Context& context, const Chapter& chapter, Program& program, const DisplayPass& display,
-                  const Targets& targets, const Frame& frame);
+void record_frame(const Context& context, Program& program, DisplaySystem& display, const Targets& targets, const Frame& frame);
 
 class Renderer {
  public:
@@ -47,19 +37,23 @@ class Renderer {
   Image picture();      // linear, with the fault --inject nan planted if asked
   Image8 displayed();
   VkExtent2D size() const { return targets_.picture.size; }
+  const gpu::Image& target() const { return targets_.picture; }
+  void rebuild() {
+    program_.rebuild();
+    display_->rebuild();
+  }
 
  private:
   Context context_;
-  const Chapter& chapter_;
   Program& program_;
   gpu::CommandPool pool_;
   VkCommandBuffer commands_;
   gpu::Timer timer_;
-  DisplayPass display_;
+  std::unique_ptr<DisplaySystem> display_;
   Targets targets_;
 };
 
-// Reads back an rgba32f or rgba8 image that compute wrote last (layout GENERAL before and after).
+// Reads back an rgba32f (or rgba16f) or rgba8 image that compute wrote last (layout GENERAL before and after).
 Image read_picture(const gpu::Device& device, VkCommandPool pool, const gpu::Image& image);
 Image8 read_displayed(const gpu::Device& device, VkCommandPool pool, const gpu::Image& image);
 

@@ -4,7 +4,7 @@
 namespace welkin::gpu {
 
 // [barrier]
-void image_barrier(VkCommandBuffer commands, VkImage image, Use before, Use after) {
+void image_barrier(VkCommandBuffer commands, VkImage image, Use before, Use after, VkImageAspectFlags aspect) {
   const VkImageMemoryBarrier2 barrier{.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
                                       .srcStageMask = before.stage,
                                       .srcAccessMask = before.access,
@@ -15,7 +15,7 @@ void image_barrier(VkCommandBuffer commands, VkImage image, Use before, Use afte
                                       .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
                                       .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
                                       .image = image,
-                                      .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
+                                      .subresourceRange = {aspect, 0, 1, 0, 1}};
   const VkDependencyInfo info{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
                               .imageMemoryBarrierCount = 1,
                               .pImageMemoryBarriers = &barrier};

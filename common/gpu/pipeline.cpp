@@ -89,15 +89,23 @@ DescriptorSet create_descriptor_set(const Device& device, VkDescriptorSetLayout 
   return set;
 }
 
-void write_storage_image(const Device& device, const DescriptorSet& set, uint32_t slot, const Image& image) {
-  const VkDescriptorImageInfo info{.imageView = image.view, .imageLayout = VK_IMAGE_LAYOUT_GENERAL};
+static void write_image(const Device& device, const DescriptorSet& set, uint32_t slot, VkDescriptorType type, const Image& image, VkSampler sampler) {
+  const VkDescriptorImageInfo info{.sampler = sampler, .imageView = image.view, .imageLayout = VK_IMAGE_LAYOUT_GENERAL};
   const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                                    .dstSet = set.handle,
                                    .dstBinding = slot,
                                    .descriptorCount = 1,
-                                   .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
+                                   .descriptorType = type,
                                    .pImageInfo = &info};
   vkUpdateDescriptorSets(device, 1, &write, 0, nullptr);
+}
+
+void write_storage_image(const Device& device, const DescriptorSet& set, uint32_t slot, const Image& image) {
+  write_image(device, set, slot, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, image, VK_NULL_HANDLE);
+}
+
+void write_sampled_image(const Device& device, const DescriptorSet& set, uint32_t slot, const Image& image, VkSampler sampler) {
+  write_image(device, set, slot, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, image, sampler);
 }
 
 void write_buffer(const Device& device, const DescriptorSet& set, uint32_t slot, VkDescriptorType type, const Buffer& buffer) {

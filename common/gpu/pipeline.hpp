@@ -41,17 +41,26 @@ struct DescriptorSet {
 };
 DescriptorSet create_descriptor_set(const Device& device, VkDescriptorSetLayout layout, const std::vector<Binding>& bindings);
 void write_storage_image(const Device& device, const DescriptorSet& set, uint32_t slot, const Image& image);
+// For VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER; the image is read in layout GENERAL.
+void write_sampled_image(const Device& device, const DescriptorSet& set, uint32_t slot, const Image& image, VkSampler sampler);
 void write_buffer(const Device& device, const DescriptorSet& set, uint32_t slot, VkDescriptorType type, const Buffer& buffer);
 
-// Binds pipeline, set and push constants, then starts enough workgroups of local size 8x8 to cover `size`.
+// Binds pipeline, set and push constants, then starts that many workgroups.
 template <typename Push>
-void dispatch_over(VkCommandBuffer commands, const ComputePipeline& pipeline, const DescriptorSet& set, const Push& push,
-                   VkExtent2D size) {
+void dispatch(VkCommandBuffer commands, const ComputePipeline& pipeline, const DescriptorSet& set, const Push& push,
+              uint32_t groups_x, uint32_t groups_y = 1, uint32_t groups_z = 1) {
   static_assert(sizeof(Push) <= 128, "push constants: 128 bytes is what every device has");
   vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.handle);
   vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.layout, 0, 1, &set.handle, 0, nullptr);
   vkCmdPushConstants(commands, pipeline.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(Push), &push);
-  vkCmdDispatch(commands, (size.width + 7) / 8, (size.height + 7) / 8, 1);
+  vkCmdDispatch(commands, groups_x, groups_y, groups_z);
+}
+
+// The same with enough workgroups of local size 8x8 to cover `size`.
+template <typename Push>
+void dispatch_over(VkCommandBuffer commands, const ComputePipeline& pipeline, const DescriptorSet& set, const Push& push,
+                   VkExtent2D size) {
+  dispatch(commands, pipeline, set, push, (size.width + 7) / 8, (size.height + 7) / 8);
 }
 
 }  // namespace welkin::gpu

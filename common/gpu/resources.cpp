@@ -34,16 +34,16 @@ AccountEntry::~AccountEntry() {
 }
 
 // [image]
-Image create_image(const Device& device, const std::string& name, VkExtent2D size, VkFormat format, VkImageUsageFlags usage) {
-  const uint32_t limit = device.limits().maxImageDimension2D;
-  if (size.width == 0 || size.height == 0 || size.width > limit || size.height > limit)
-    fail("{}: {}x{} pixels; each side must be 1 to {} on {}", name, size.width, size.height, limit, device.candidate().name);
-  Image image{.size = size, .format = format};
+Image create_image(const Device& device, const std::string& name, VkExtent2D size, VkFormat format, VkImageUsageFlags usage, uint32_t depth) {
+  const uint32_t limit = depth > 0 ? device.limits().maxImageDimension3D : device.limits().maxImageDimension2D;
+  if (size.width == 0 || size.height == 0 || size.width > limit || size.height > limit || depth > limit)
+    fail("{}: {}x{}x{} texels; each side must be 1 to {} on {}", name, size.width, size.height, std::max(depth, 1u), limit, device.candidate().name);
+  Image image{.size = size, .depth = std::max(depth, 1u), .format = format};
 
   const VkImageCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
-                               .imageType = VK_IMAGE_TYPE_2D,
+                               .imageType = depth > 0 ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D,
                                .format = format,
-                               .extent = {size.width, size.height, 1},
+                               .extent = {size.width, size.height, image.depth},
                                .mipLevels = 1,
                                .arrayLayers = 1,
                                .samples = VK_SAMPLE_COUNT_1_BIT,
@@ -61,9 +61,9 @@ Image create_image(const Device& device, const std::string& name, VkExtent2D siz
 
   const VkImageViewCreateInfo view_info{.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
                                         .image = handle,
-                                        .viewType = VK_IMAGE_VIEW_TYPE_2D,
+                                        .viewType = depth > 0 ? VK_IMAGE_VIEW_TYPE_3D : VK_IMAGE_VIEW_TYPE_2D,
                                         .format = format,
-                                        .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
+                                        .subresourceRange = {aspect_of(format), 0, 1, 0, 1}};
   VkImageView view = VK_NULL_HANDLE;
   check(vkCreateImageView(device, &view_info, nullptr, &view), "vkCreateImageView");
   image.view = ImageView(device, view);
@@ -72,6 +72,23 @@ Image create_image(const Device& device, const std::string& name, VkExtent2D siz
   return image;
 }
 // [/image]
+
+VkImageAspectFlags aspect_of(VkFormat format) {
+  return format == VK_FORMAT_D32_SFLOAT || format == VK_FORMAT_D16_UNORM ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
+}
+
+Sampler create_sampler(const Device& device, Border u, Border v) {
+  const auto mode = [](Border border) { return border == Border::clamp ? VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE : VK_SAMPLER_ADDRESS_MODE_REPEAT; };
+  const VkSamplerCreateInfo info{.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
+                                 .magFilter = VK_FILTER_LINEAR,
+                                 .minFilter = VK_FILTER_LINEAR,
+                                 .addressModeU = mode(u),
+                                 .addressModeV = mode(v),
+                                 .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE};
+  VkSampler sampler = VK_NULL_HANDLE;
+  check(vkCreateSampler(device, &info, nullptr, &sampler), "vkCreateSampler");
+  return {device, sampler};
+}
 
 Buffer create_buffer(const Device& device, const std::string& name, VkDeviceSize bytes, VkBufferUsageFlags usage, Where where) {
   Buffer buffer{.bytes = bytes};

@@ -31,12 +31,21 @@ struct Image {
   ImageHandle handle;
   ImageView view;
   VkExtent2D size{};
+  uint32_t depth = 1;  // slices of a 3-D image
   VkFormat format = VK_FORMAT_UNDEFINED;
   AccountEntry account;
 };
 
-// A 2-D image in device memory, layout UNDEFINED. Throws if a side is 0 or beyond the device's limit.
-Image create_image(const Device& device, const std::string& name, VkExtent2D size, VkFormat format, VkImageUsageFlags usage);
+// An image in device memory, layout UNDEFINED: 2-D, or 3-D of `depth` slices if that is above 0. Throws if a side is 0 or
+// beyond the device's limit. Depth formats get a depth view, all others a colour view.
+Image create_image(const Device& device, const std::string& name, VkExtent2D size, VkFormat format, VkImageUsageFlags usage, uint32_t depth = 0);
+
+// What of an image a view or a barrier is about.
+VkImageAspectFlags aspect_of(VkFormat format);
+
+// How a shader reads between texels: linear in both cases; at the borders the last texel, or around to the first.
+enum class Border { clamp, repeat };
+Sampler create_sampler(const Device& device, Border u = Border::clamp, Border v = Border::clamp);
 
 struct Buffer {
   Memory memory;

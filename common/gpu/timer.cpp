@@ -12,12 +12,12 @@ Timer::Timer(const Device& device) : device_(&device) {
   VkQueryPool pool = VK_NULL_HANDLE;
   check(vkCreateQueryPool(device, &info, nullptr, &pool), "vkCreateQueryPool");
   queries_ = QueryPool(device, pool);
-  names_.reserve(kMaximumPasses);
+  names_.resize(kMaximumPasses);
   times_.reserve(kMaximumPasses);
 }
 
 void Timer::begin_frame(VkCommandBuffer commands) {
-  names_.clear();
+  count_ = 0;
   vkCmdResetQueryPool(commands, queries_, 0, 4 * kMaximumPasses);
 }
 
@@ -31,28 +31,29 @@ void Timer::stamp(VkCommandBuffer commands, uint32_t query) {
 }
 
 void Timer::begin_pass(VkCommandBuffer commands, const std::string& name) {
-  if (names_.size() == kMaximumPasses) fail("timer: more than {} passes in a frame", kMaximumPasses);
-  stamp(commands, 2 * static_cast<uint32_t>(names_.size()));
-  names_.push_back(name);
+  if (count_ == kMaximumPasses) fail("timer: more than {} passes in a frame", kMaximumPasses);
+  stamp(commands, 2 * static_cast<uint32_t>(count_));
+  names_[count_++] = name;
 }
 
 void Timer::end_pass(VkCommandBuffer commands) {
-  stamp(commands, 2 * static_cast<uint32_t>(names_.size()) - 1);
+  stamp(commands, 2 * static_cast<uint32_t>(count_) - 1);
 }
 // [/timestamps]
 
 const std::vector<PassTime>& Timer::read() {
-  times_.clear();
-  if (device_->timestamp_bits() == 0 || names_.empty()) return times_;
+  times_.resize(device_->timestamp_bits() == 0 ? 0 : count_);
+  if (times_.empty()) return times_;
   std::array<uint64_t, 2 * kMaximumPasses> ticks{};
-  const uint32_t count = 2 * static_cast<uint32_t>(names_.size());
+  const uint32_t count = 2 * static_cast<uint32_t>(count_);
   check(vkGetQueryPoolResults(*device_, queries_, 0, count, sizeof ticks, ticks.data(), sizeof(uint64_t),
                               VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
         "vkGetQueryPoolResults");
   const uint64_t mask = device_->timestamp_bits() >= 64 ? ~uint64_t{0} : (uint64_t{1} << device_->timestamp_bits()) - 1;
-  for (size_t i = 0; i < names_.size(); ++i)
-    times_.push_back({names_[i], static_cast<double>((ticks[2 * i + 1] - ticks[2 * i]) & mask) *
-                                     static_cast<double>(device_->limits().timestampPeriod) * 1e-6});
+  for (size_t i = 0; i < count_; ++i) {
+    times_[i].name = names_[i];
+    times_[i].milliseconds = static_cast<double>((ticks[2 * i + 1] - ticks[2 * i]) & mask) * static_cast<double>(device_->limits().timestampPeriod) * 1e-6;
+  }
   return times_;
 }
 

@@ -25,14 +25,14 @@ class Timer {
 
   // Times of the passes of the last recorded frame; the device must have finished it. Empty if it has no timestamps.
   const std::vector<PassTime>& read();
-  const std::vector<std::string>& names() const { return names_; }
 
  private:
   void stamp(VkCommandBuffer commands, uint32_t query);
 
   const Device* device_;
   QueryPool queries_;
-  std::vector<std::string> names_;
+  std::vector<std::string> names_;  // kMaximumPasses of them, so that a frame assigns and does not allocate
+  size_t count_ = 0;                // of them in this frame
   std::vector<PassTime> times_;
 };
 

@@ -41,6 +41,7 @@ class Handle {
 };
 
 using ImageHandle = Handle<VkImage, vkDestroyImage>;
+using Sampler = Handle<VkSampler, vkDestroySampler>;
 using ImageView = Handle<VkImageView, vkDestroyImageView>;
 using BufferHandle = Handle<VkBuffer, vkDestroyBuffer>;
 using Memory = Handle<VkDeviceMemory, vkFreeMemory>;
