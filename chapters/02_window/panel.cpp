@@ -146,11 +146,13 @@ void Panel::layout(const Chapter& chapter, const Scene& scene, Settings& setting
   ImGui::NewFrame();
   if (state.visible) {
     ImGui::SetNextWindowPos({8, 8}, ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowSizeConstraints({0, 0}, {static_cast<float>(state_->size.width), static_cast<float>(state_->size.height) - 16.0f});
     ImGui::Begin(fmt::format("{:02} {}", chapter.number, chapter.title).c_str(), nullptr, ImGuiWindowFlags_AlwaysAutoResize);
     ImGui::PushTextWrapPos(340.0f);
     ImGui::TextUnformatted(chapter.whats_new.c_str());
     ImGui::TextDisabled(state.flying ? "F: back to the panel" : "F: fly (WASD, Space, Ctrl, Shift, mouse)");
     ImGui::TextDisabled("R reload shaders  P screenshot  H hide  Esc quit");
+    if (chapter.truth && ImGui::Button("T: path-trace this view")) state.truth_asked = true;
     ImGui::Text("altitude %.4g km\nazimuth %.1f, elevation %.1f", app::altitude_km(pose, scene.planet.ground_radius_km), pose.azimuth_deg, pose.elevation_deg);
     if (!settings.knobs().empty() && ImGui::CollapsingHeader("Knobs", ImGuiTreeNodeFlags_DefaultOpen))
       for (const Knob& knob : settings.knobs())

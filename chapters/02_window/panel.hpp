@@ -22,6 +22,7 @@ using app::Chapter;
 struct PanelState {
   bool visible = true;
   bool flying = false;
+  bool truth_asked = false;          // its button was pressed
   std::string message;               // shader error, "saved …": shown until the next
   std::vector<gpu::PassTime> times;  // of the last finished frame
   double time_s = 0.0;               // scene time, moved by the slider

@@ -17,6 +17,7 @@
 #include "chapters/02_window/present.hpp"
 #include "common/app/session.hpp"
 #include "common/gpu/shader_file.hpp"
+#include "common/measure/metrics.hpp"
 #include "common/scene/scene_knobs.hpp"
 
 namespace welkin {
@@ -152,6 +153,8 @@ struct Loop {
     rebuild();
   }
 
+  std::string error_of_what_is_shown() const;
+  void ask_truth();
   void on_key(int key);
   bool draw(uint32_t index, double seconds);
   void rebuild() {
@@ -159,6 +162,33 @@ struct Loop {
     display->rebuild();
   }
 };
+
+// Path-traces the present view, small, and says how far the method is from it: and how far two such truths are from each
+// other, because noise is not error. Without the sun's disc, whose few pixels would be all a mean of squares sees.
+std::string Loop::error_of_what_is_shown() const {
+  if (!session.chapter.truth) return "this chapter has no path tracer to be measured against; those from 08 on do";
+  constexpr VkExtent2D kSize{96, 54};
+  Scene scene = session.scene;
+  scene.sun.disc = false;
+  const Session still{session.chapter, session.options, scene, session.settings, session.instance, session.device,
+                      {session.device, scene, session.settings, session.options.inject}};
+  const std::unique_ptr<Program> method = still.make_program();
+  Renderer renderer(still.context, still.chapter, *method, kSize);
+  renderer.draw(pose, state.time_s, still.options.seed, 0);
+  const Image truth = draw_truth(still, pose, kSize, 1), again = draw_truth(still, pose, kSize, 2);
+  const auto as_it_is = [](const glm::vec3& value) { return value; };
+  return fmt::format("relative RMSE {:.2g} % against {} frames of path tracing at {}x{}; two of those differ by {:.2g} %",
+                     100.0 * measure::compare(renderer.picture(), truth, as_it_is).relative_rmse, session.chapter.truth->frames, kSize.width, kSize.height,
+                     100.0 * measure::compare(again, truth, as_it_is).relative_rmse);
+}
+
+void Loop::ask_truth() {
+  swapchain.wait_for_all_frames();
+  state.truth_asked = false;
+  state.message = error_of_what_is_shown();
+  fmt::print("{}\n", state.message);
+  std::fflush(stdout);
+}
 
 void Loop::on_key(int key) {
   if (panel.wants_keyboard()) return;
@@ -180,6 +210,7 @@ void Loop::on_key(int key) {
       std::fflush(stdout);
       break;
     }
+    case GLFW_KEY_T: ask_truth(); break;
     case GLFW_KEY_R: {
       state.message = gpu::recompile_shaders(session.chapter.number);
       if (!state.message.empty()) break;  // the old pipeline stays
@@ -200,6 +231,7 @@ bool Loop::draw(uint32_t index, double seconds) {
   const VkExtent2D size = swapchain.size();
   const CameraRays camera = camera_rays(pose, session.scene, state.time_s, {size.width, size.height}, session.options.seed, index);
   state.changed.clear();
+  if (state.truth_asked) ask_truth();
   panel.layout(session.chapter, session.scene, session.settings, session.device, pose, state);
   if (!state.changed.empty()) {
     apply_scene_knobs(session.settings, session.scene);
@@ -210,7 +242,7 @@ bool Loop::draw(uint32_t index, double seconds) {
     }
   }
   gpu::begin_commands(slot->commands);
-  record_frame(session.context, *program, *display, targets, {slot->commands, targets.picture, camera, slot->timer, index, session.options.seed, seconds});
+  record_frame(session.context, *program, *display, targets, {slot->commands, targets.picture, camera, slot->timer, index, session.options.seed, seconds, pose.position_km});
   present.record(slot->commands, targets.displayed, swapchain.image(image), swapchain.view(image), size);
   panel.record(slot->commands, image);
   gpu::end_commands(slot->commands);
@@ -224,7 +256,7 @@ Exit run_window(Session& session) {
   Surface surface{session.instance};
   gpu::check(glfwCreateWindowSurface(session.instance, window.handle, nullptr, &surface.handle), "glfwCreateWindowSurface");
   Loop loop(session, window, surface.handle);
-  fmt::print("window on {} ({}); F flies, H hides the panel, P saves a picture, Esc quits\n", session.device.candidate().name, session.device.candidate().driver);
+  fmt::print("window on {} ({}); F flies, H hides the panel, P saves a picture, T asks the truth, Esc quits\n", session.device.candidate().name, session.device.candidate().driver);
   std::fflush(stdout);
 
   // [loop]

@@ -44,6 +44,7 @@ struct Frame {
   uint32_t index;
   uint32_t seed;
   double seconds;  // since the frame before; 0 for the first
+  glm::dvec3 position_km{0.0};  // of the camera, in the global frame of camera.hpp
 };
 
 // A ray of --probe, in degrees as in the file; relative azimuth 0 looks towards the sun.

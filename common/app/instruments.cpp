@@ -115,14 +115,7 @@ Image draw_reference(OtherScene& other, Program& program, VkExtent2D size) {
     renderer.draw(pose, session.options.time_s, session.options.seed, 0);
     return renderer.picture();
   }
-  const Truth& truth = *session.chapter.truth;
-  Settings settings(truth.knobs);
-  for (const auto& [name, text] : truth.settings) settings.set(name, text);
-  const Context context{session.device, other.scene, settings, session.options.inject};
-  const std::unique_ptr<Program> tracer = truth.make(context);
-  Renderer renderer(context, session.chapter, *tracer, size);
-  for (uint32_t i = 0; i < truth.frames; ++i) renderer.draw(pose, session.options.time_s, session.options.seed, i);
-  return renderer.picture();
+  return draw_truth(session, pose, size, session.options.seed);
 }
 
 std::string describe_reference(const Chapter& chapter) {
@@ -136,6 +129,18 @@ void must_have_standard_views(const Session& session) {
 }
 
 }  // namespace
+
+Image draw_truth(const Session& session, const CameraPose& pose, VkExtent2D size, uint32_t seed) {
+  const Truth& truth = *session.chapter.truth;
+  Settings settings(truth.knobs);
+  for (const auto& [name, text] : truth.settings) settings.set(name, text);
+  const Context context{session.device, session.scene, settings, session.options.inject};
+  const std::unique_ptr<Program> tracer = truth.make(context);
+  const Chapter plain;
+  Renderer renderer(context, plain, *tracer, size);
+  for (uint32_t i = 0; i < truth.frames; ++i) renderer.draw(pose, session.options.time_s, seed, i);
+  return renderer.picture();
+}
 
 Exit run_bench(const Session& session) {
   const std::unique_ptr<Program> program = session.make_program();

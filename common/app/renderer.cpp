@@ -107,7 +107,7 @@ void Renderer::draw(const CameraPose& pose, double time_s, uint32_t seed, uint32
   const CameraRays camera = camera_rays(pose, context_.scene, time_s, {size().width, size().height}, seed, index);
   gpu::begin_commands(commands_);
   const double seconds = index == 0 ? 0.0 : kHeadlessFrameSeconds;
-  record_frame(context_, program_, *display_, targets_, {commands_, targets_.picture, camera, timer_, index, seed, seconds});
+  record_frame(context_, program_, *display_, targets_, {commands_, targets_.picture, camera, timer_, index, seed, seconds, pose.position_km});
   gpu::end_commands(commands_);
   gpu::submit_and_wait(context_.device, commands_);
 }

@@ -35,6 +35,9 @@ std::string restoring_text(const Session& session, const CameraPose& pose);
 // Writes the picture where --output says: .exr linear, .png displayed and restoring.
 void write_output(const Session& session, const std::string& file, const CameraPose& pose, const Image& picture, const Image8& displayed);
 
+// A view as the chapter's truth shows it; the chapter has one. Without its display pass, whatever that is.
+Image draw_truth(const Session& session, const CameraPose& pose, VkExtent2D size, uint32_t seed);
+
 // Modes; each returns the program's exit code (before validation messages are looked at).
 Exit run_picture(const Session& session);  // headless
 Exit run_bench(const Session& session);

@@ -1,27 +1,42 @@
 // Ladders multiplied out, and the table of a sweep. See sweep.hpp.
 #include "common/measure/sweep.hpp"
 
+#include <algorithm>
+
 #include "common/error.hpp"
 #include "common/image/csv.hpp"
 
 namespace welkin::measure {
 
 std::vector<std::vector<double>> ladder_settings(const Settings& settings) {
-  std::vector<std::vector<double>> combinations(1);
+  std::vector<std::vector<double>> rungs;
+  size_t product = 1;
   for (const Knob& knob : settings.knobs()) {
     const bool climbs = !knob.ladder.empty() && !settings.was_set(knob.name);
-    const std::vector<double> rungs = climbs ? knob.ladder : std::vector<double>{settings.number(knob.name)};
-    if (combinations.size() * rungs.size() > 100'000)
-      fail("the ladders of this chapter's knobs make more than 100000 combinations: fix some with --set");
-    std::vector<std::vector<double>> longer;
-    for (const auto& head : combinations)
-      for (const double rung : rungs) {
-        longer.push_back(head);
-        longer.back().push_back(rung);
-      }
-    combinations = std::move(longer);
+    rungs.push_back(climbs ? knob.ladder : std::vector<double>{settings.number(knob.name)});
+    product = std::min(product * rungs.back().size(), kMostCombinations + 1);
   }
-  return combinations;
+  std::vector<std::vector<double>> all(1);
+  if (product <= kMostCombinations) {
+    for (const std::vector<double>& ladder : rungs) {
+      std::vector<std::vector<double>> longer;
+      for (const auto& head : all)
+        for (const double rung : ladder) {
+          longer.push_back(head);
+          longer.back().push_back(rung);
+        }
+      all = std::move(longer);
+    }
+    return all;
+  }
+  for (const Knob& knob : settings.knobs()) all.front().push_back(settings.number(knob.name));
+  for (size_t knob = 0; knob < rungs.size(); ++knob)
+    for (const double rung : rungs[knob]) {
+      if (rung == all.front()[knob]) continue;
+      all.push_back(all.front());
+      all.back()[knob] = rung;
+    }
+  return all;
 }
 
 Settings with_values(Settings settings, const std::vector<double>& values) {

@@ -1,4 +1,4 @@
-// Accuracy against time: every combination of the knobs' ladders, measured against a reference, as a CSV for `plot`.
+// Accuracy against time: the combinations of the knobs' ladders, measured against a reference, as a CSV for `plot`.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,9 @@
 namespace welkin::measure {
 
 // One value per knob for each combination of the ladders, the last knob fastest. Knobs without a ladder, and those set
-// explicitly (so that --set narrows a sweep), keep the value they have in `settings`. Error above 100,000 combinations.
+// explicitly (so that --set narrows a sweep), keep the value they have in `settings`. Where that would be more than
+// kMostCombinations: the settings as they are, then every knob alone up its ladder.
+inline constexpr size_t kMostCombinations = 300;
 std::vector<std::vector<double>> ladder_settings(const Settings& settings);
 
 Settings with_values(Settings settings, const std::vector<double>& values);  // one value per knob, in order
