@@ -67,4 +67,5 @@ function(welkin_chapter)
   target_link_libraries(${full} PRIVATE chapter_${chapter_NAME} welkin_app)
   welkin_shaders(shaders_${full} ${full})
   add_dependencies(${full} shaders_${full} shaders_app)
+  add_dependencies(chapter_${chapter_NAME} shaders_${full})  # who links the passes of a chapter needs its shaders
 endfunction()

@@ -83,7 +83,7 @@ bool parse_options(int argc, char** argv, const Chapter& chapter, Options& optio
   cli.add_option("--time", time_text, "Seconds after the scene's moment: the sun moves 15 degrees an hour [0]")->type_name("T")->group("picture");
   cli.add_option("--output", options.output, "Write the (last) picture: .png displayed, .exr linear [out/" + chapter.name + ".png]")->type_name("FILE")->group("output");
   cli.add_option("--dump", dump, "Write 'picture' (.exr), 'displayed' (.png), 'knobs' (.json)" +
-                                 (chapter.images.empty() ? std::string() : fmt::format(", or an image (.exr): {}", fmt::join(chapter.images, ", "))))->type_name("WHAT FILE")->expected(2)->group("output");
+                                 (chapter.images.empty() ? std::string() : fmt::format(", or an image (.exr, or .png as exposed): {}", fmt::join(chapter.images, ", "))))->type_name("WHAT FILE")->expected(2)->group("output");
   cli.add_flag("--explain", options.explain, "Say which effects are simulated, why, with passes, bytes and time")->group("output");
   cli.add_option("--bench", options.bench, "Measure repeated frames and write JSON")->type_name("FILE.json")->group("measure");
   cli.add_option("--sweep", options.sweep, "Measure error against time over the knobs' ladders and write CSV")->type_name("FILE.csv")->group("measure");
@@ -139,7 +139,8 @@ bool parse_options(int argc, char** argv, const Chapter& chapter, Options& optio
     parse_choice<int>("--dump", dump[0], known);
     options.dump_what = dump[0], options.dump_file = dump[1];
     const std::string extension = dump[0] == "knobs" ? ".json" : dump[0] == "displayed" ? ".png" : ".exr";
-    if (!options.dump_file.ends_with(extension)) fail("--dump {} {}: the name must end in {}", dump[0], dump[1], extension);
+    const bool shown = dump[0] != "picture" && extension == ".exr" && options.dump_file.ends_with(".png");
+    if (!options.dump_file.ends_with(extension) && !shown) fail("--dump {} {}: the name must end in {}", dump[0], dump[1], extension);
   }
   // Where results go is looked at before the work is done, not after.
   for (const std::string& file : {options.output, options.dump_file, options.bench, options.sweep, options.probe_out}) {

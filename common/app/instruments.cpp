@@ -115,11 +115,11 @@ Image draw_reference(OtherScene& other, Program& program, VkExtent2D size) {
     renderer.draw(pose, session.options.time_s, session.options.seed, 0);
     return renderer.picture();
   }
-  return draw_truth(session, pose, size, session.options.seed);
+  return draw_truth(session, pose, size, session.options.seed, session.options.frames);
 }
 
-std::string describe_reference(const Chapter& chapter) {
-  std::string text = chapter.truth ? fmt::format("path tracer, {} frames", chapter.truth->frames) : "";
+std::string describe_reference(const Chapter& chapter, uint32_t frames) {
+  std::string text = chapter.truth ? fmt::format("path tracer, {} frames", frames > 0 ? frames : chapter.truth->frames) : "";
   for (const auto& [name, value] : chapter.truth ? chapter.truth->settings : chapter.reference) text += (text.empty() ? "" : " ") + name + "=" + value;
   return text;
 }
@@ -130,7 +130,7 @@ void must_have_standard_views(const Session& session) {
 
 }  // namespace
 
-Image draw_truth(const Session& session, const CameraPose& pose, VkExtent2D size, uint32_t seed) {
+Image draw_truth(const Session& session, const CameraPose& pose, VkExtent2D size, uint32_t seed, uint32_t frames) {
   const Truth& truth = *session.chapter.truth;
   Settings settings(truth.knobs);
   for (const auto& [name, text] : truth.settings) settings.set(name, text);
@@ -138,7 +138,7 @@ Image draw_truth(const Session& session, const CameraPose& pose, VkExtent2D size
   const std::unique_ptr<Program> tracer = truth.make(context);
   const Chapter plain;
   Renderer renderer(context, plain, *tracer, size);
-  for (uint32_t i = 0; i < truth.frames; ++i) renderer.draw(pose, session.options.time_s, seed, i);
+  for (uint32_t i = 0; i < (frames > 0 ? frames : truth.frames); ++i) renderer.draw(pose, session.options.time_s, seed, i);
   return renderer.picture();
 }
 
@@ -202,7 +202,7 @@ Exit run_sweep(const Session& session) {
   }
   measure::write_sweep_csv(session.options.sweep, session.chapter.knobs, rows,
                            {session.chapter.name, "standard views", device.name, device.driver, device.software, size.width,
-                            size.height, describe_reference(session.chapter), now_utc()});
+                            size.height, describe_reference(session.chapter, session.options.frames), now_utc()});
   fmt::print("{} settings x {} views -> {}\n", rungs, session.chapter.standard_views.size(), session.options.sweep);
   return Exit::ok;
 }

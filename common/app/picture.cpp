@@ -1,4 +1,5 @@
 // Headless modes that end with a picture: the picture itself, --dump, --against, --explain.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -83,8 +84,13 @@ Exit run_picture(const Session& session) {
   const size_t not_finite = count_not_finite(picture);
   if (options.dump_what == "picture") image::write_exr(options.dump_file, picture);
   if (options.dump_what == "displayed") image::write_png8(options.dump_file, renderer.displayed());
-  if (const gpu::Image* image = program->image(options.dump_what))
-    image::write_exr(options.dump_file, read_picture(session.device, gpu::create_command_pool(session.device), *image));
+  if (std::count(session.chapter.images.begin(), session.chapter.images.end(), options.dump_what) > 0) {
+    const gpu::Image* image = program->image(options.dump_what);
+    if (image == nullptr) fail("--dump {}: with this scene and these settings there is no such image", options.dump_what);
+    const Image content = read_picture(session.device, gpu::create_command_pool(session.device), *image);
+    if (options.dump_file.ends_with(".exr")) image::write_exr(options.dump_file, content);
+    else image::write_png8(options.dump_file, image::to_display(content, static_cast<float>(kBaseExposure * std::exp2(session.scene.post.exposure_ev))));
+  }
   if (writes) {
     if (options.output.empty()) std::filesystem::create_directories("out");
     write_output(session, file, pose, picture, renderer.displayed());

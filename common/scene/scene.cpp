@@ -103,7 +103,15 @@ Scene load_scene(const std::string& name_or_file, const fs::path& scenes_directo
     throw Error(error.exit_code, one_line(error.what()));
   }
   if (!text) fail("scene file {}: this picture carries no scene; accepted is a .png that a chapter wrote", shown);
-  return parse_scene(*text, path.extension() == ".png" ? shown + " (embedded scene)" : shown);
+  Scene scene = parse_scene(*text, path.extension() == ".png" ? shown + " (embedded scene)" : shown);
+  // A height map lies beside the scene that names it.
+  if (scene.terrain && !scene.terrain->height_map.empty()) {
+    const fs::path map = path.parent_path() / scene.terrain->height_map;  // an absolute name stays as it is
+    std::error_code error;
+    const fs::path whole = fs::absolute(map, error);
+    scene.terrain->height_map = (error ? map : whole).lexically_normal().string();
+  }
+  return scene;
 }
 
 std::string write_scene(const Scene& scene) {
@@ -149,8 +157,20 @@ std::string write_scene(const Scene& scene) {
     line("elevation_deg", number(view.elevation_deg));
     line("fov_deg", number(view.fov_deg));
   }
+  if (scene.terrain) {
+    const Terrain& terrain = *scene.terrain;
+    out += "\n[terrain]\n";
+    line("extent_km", number(terrain.extent_km));
+    line("height_km", number(terrain.height_km));
+    if (!terrain.height_map.empty()) line("height_map", quoted(terrain.height_map));
+    else line("size", fmt::format("{}", terrain.size)), line("seed", fmt::format("{}", terrain.seed));
+    line("shadows", terrain.shadows ? "true" : "false");
+    if (terrain.signs_azimuth_deg) line("signs_azimuth_deg", number(*terrain.signs_azimuth_deg));
+  }
   out += "\n[post]\n";
+  line("exposure", scene.post.manual ? "\"manual\"" : "\"auto\"");
   line("exposure_ev", number(scene.post.exposure_ev));
+  line("compensation_ev", number(scene.post.compensation_ev));
   if (!scene.settings.empty()) out += "\n[settings]\n";
   for (const auto& [knob, value] : scene.settings) line(quoted(knob).c_str(), quoted(value));
   return out;

@@ -59,8 +59,21 @@ struct View {
   double fov_deg = 60.0;           // vertical
 };
 
+// Relief on the sphere, from a height map that is a square around the scene's place. Chapters below 11 have none.
+struct Terrain {
+  std::string height_map;          // a 16-bit grayscale PNG; empty: hills are made from noise
+  double extent_km = 128.0;        // side of the square
+  double height_km = 3.0;          // of a white pixel, or of the highest hill
+  int size = 1024;                 // samples a side of the map that is made
+  int seed = 1;                    // of its noise
+  bool shadows = true;             // it keeps the sun from itself and from the air
+  std::optional<double> signs_azimuth_deg;  // a row of signs at 1 to 100 km in this direction
+};
+
 struct Post {
-  double exposure_ev = 0.0;        // stops, on top of the chapter's base exposure
+  bool manual = false;             // exposure set by hand even where a chapter has a light meter (06 on)
+  double exposure_ev = 0.0;        // set by hand: stops, on top of the chapter's base exposure
+  double compensation_ev = 0.0;    // metered: stops, on top of what the meter finds
 };
 
 struct Scene {
@@ -69,6 +82,7 @@ struct Scene {
   std::vector<Medium> media;       // absent medium: it does not exist (no term, no variant)
   Sun sun;
   std::vector<View> views;         // at least one; the first is the default
+  std::optional<Terrain> terrain;
   Post post;
   std::vector<std::pair<std::string, std::string>> settings;  // [settings] knob = value, applied before --set
 

@@ -24,7 +24,7 @@ void apply_scene_knobs(const Settings& settings, Scene& scene) {
   if (set("sun.azimuth_deg")) scene.sun.azimuth_deg = settings.number("sun.azimuth_deg");
   if (set("sun.disc")) scene.sun.disc = settings.on("sun.disc");
   if (set("ground.albedo")) scene.planet.ground_albedo = glm::dvec3(settings.number("ground.albedo"));
-  if (set("exposure.ev")) scene.post.exposure_ev = settings.number("exposure.ev");
+  if (set("exposure.ev")) scene.post.exposure_ev = settings.number("exposure.ev"), scene.post.manual = true;
   if (Medium* mie = scene.medium("mie"); mie != nullptr) {
     if (set("mie.phase")) mie->phase = static_cast<Phase>(settings.integer("mie.phase"));
     if (set("mie.g")) mie->g = settings.number("mie.g");

@@ -12,7 +12,7 @@ namespace {
 using namespace strict_toml;
 
 constexpr int kVersion = 1;
-constexpr const char* kSections = "planet, medium, sun, view, post, settings";
+constexpr const char* kSections = "planet, medium, sun, view, terrain, post, settings";
 // A dotted key nests one table per dot, and tables are destroyed recursively: bounded lines bound the
 // recursion.
 constexpr size_t kLongestLine = 1024;
@@ -26,9 +26,9 @@ void check_top(const Section& root) {
     fail_at(*root.file, version.source(), fmt::format("version {}", describe(version)),
             fmt::format("this build knows version {}", kVersion));
   const toml::key* key =
-      first_unknown(root, {"version", "name", "planet", "medium", "sun", "view", "post", "settings"});
+      first_unknown(root, {"version", "name", "planet", "medium", "sun", "view", "terrain", "post", "settings"});
   if (!key) return;
-  for (const char* later : {"terrain", "clouds", "fog", "smoke", "night"})
+  for (const char* later : {"clouds", "fog", "smoke", "night"})
     if (*key == later)
       fail_at(*root.file, key->source(), fmt::format("section '{}'", later),
               fmt::format("not known to this build, which knows {}", kSections));
@@ -160,6 +160,27 @@ View read_view(const Section& section, double sun_azimuth_deg) {
   return view;
 }
 
+// Whether the map can be read is found out when it is drawn: most chapters have no terrain.
+Terrain read_terrain(const Section& section) {
+  check_keys(section, {"height_map", "extent_km", "height_km", "size", "seed", "shadows", "signs_azimuth_deg"});
+  Terrain terrain;
+  if (has(section, "height_map")) {
+    const toml::node& map = *section.table->get("height_map");
+    if (map.is_string()) terrain.height_map = map.as_string()->get();
+    if (terrain.height_map.empty() || terrain.height_map.size() > 1000 || one_line(terrain.height_map) != terrain.height_map)
+      fail_value(section, "height_map", map, "the name of a 16-bit grayscale PNG file, quoted");
+    check_exclusive(section, "height_map", "size");
+    check_exclusive(section, "height_map", "seed");
+  }
+  read(section, "extent_km", terrain.extent_km, {1, 1000, "km"});
+  read(section, "height_km", terrain.height_km, {0, 20, "km"});
+  read(section, "size", terrain.size, {64, 4096, "samples"});
+  read(section, "seed", terrain.seed, {0, 1e6});
+  read(section, "shadows", terrain.shadows);
+  if (has(section, "signs_azimuth_deg")) read_azimuth(section, "signs_azimuth_deg", terrain.signs_azimuth_deg.emplace());
+  return terrain;
+}
+
 // Knob names belong to chapters, so only their spelling is checked here; the chapter checks the rest.
 void read_settings(const Section& section, Scene& scene) {
   std::vector<const toml::key*> keys;
@@ -228,9 +249,12 @@ Scene parse_scene(const std::string& text, const std::string& file) {
       fail_at(file, section.table->source(), "too many views", fmt::format("accepted are up to {}", kMostViews));
   });
   if (scene.views.empty()) fail_at(file, table.source(), "no views", "a scene has at least one [[view]]");
+  for_table(root, "terrain", [&](const Section& section) { scene.terrain = read_terrain(section); });
   for_table(root, "post", [&](const Section& section) {
-    check_keys(section, {"exposure_ev"});
+    check_keys(section, {"exposure", "exposure_ev", "compensation_ev"});
+    scene.post.manual = read_choice(section, "exposure", {"auto", "manual"}, 0) == 1;
     read(section, "exposure_ev", scene.post.exposure_ev, {-20, 30, "stops"});
+    read(section, "compensation_ev", scene.post.compensation_ev, {-20, 20, "stops"});
   });
   for_table(root, "settings", [&](const Section& section) { read_settings(section, scene); });
   return scene;

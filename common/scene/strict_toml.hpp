@@ -124,6 +124,15 @@ inline void read(const Section& section, std::string_view key, double& value, co
     value = checked(section, key, *node, range, "a number from " + text_of(range));
 }
 
+// A whole number.
+inline void read(const Section& section, std::string_view key, int& value, const Range& range) {
+  const toml::node* node = section.table->get(key);
+  if (!node) return;
+  const std::string accepted = "a whole number from " + text_of(range);
+  if (!node->is_integer()) fail_value(section, key, *node, accepted);
+  value = static_cast<int>(checked(section, key, *node, range, accepted));
+}
+
 // An azimuth, from `origin_deg`, brought to 0 <= azimuth < 360.
 inline void read_azimuth(const Section& section, std::string_view key, double& value, double origin_deg = 0.0) {
   if (!has(section, key)) return;

@@ -40,13 +40,13 @@ TEST_CASE("each refusal names file, line, column and what is accepted", "[scene]
       // the file as a whole; `rest` starts on line 2
       {"", "no views at f:1:1: a scene has at least one [[view]]"},
       {"wind = 1\n" + kView,
-       "unknown section or key 'wind' at f:2:1: known are version, name, planet, medium, sun, view, post, "
-       "settings"},
+       "unknown section or key 'wind' at f:2:1: known are version, name, planet, medium, sun, view, terrain, "
+       "post, settings"},
       {"[clouds]\n" + kView,
-       "section 'clouds' at f:2:2: not known to this build, which knows planet, medium, sun, view, post, "
+       "section 'clouds' at f:2:2: not known to this build, which knows planet, medium, sun, view, terrain, post, "
        "settings"},
       {kView + "[[fog]]\n",
-       "section 'fog' at f:4:3: not known to this build, which knows planet, medium, sun, view, post, "
+       "section 'fog' at f:4:3: not known to this build, which knows planet, medium, sun, view, terrain, post, "
        "settings"},
       {"name = \"a b\"\n", "name = 'a b' at f:2:8: accepted is quoted text of 1 to 64 letters, digits, _, - or ."},
       {"name = \"a\\nb\"\n",
@@ -164,7 +164,25 @@ TEST_CASE("each refusal names file, line, column and what is accepted", "[scene]
        "view.azimuth_from_sun_deg given beside azimuth_deg at f:5:24: accepted is one of the two"},
       {kView + "[post]\nexposure_ev = 31\n",
        "post.exposure_ev = 31 at f:5:15: accepted is a number from -20 to 30 stops"},
-      {kView + "[post]\ngamma = 2\n", "unknown key 'gamma' in post at f:5:1: known are exposure_ev"},
+      {kView + "[post]\ngamma = 2\n", "unknown key 'gamma' in post at f:5:1: known are exposure, exposure_ev, compensation_ev"},
+      // terrain
+      {kView + "[terrain]\nscale = 2\n",
+       "unknown key 'scale' in terrain at f:5:1: known are height_map, extent_km, height_km, size, seed, shadows, signs_azimuth_deg"},
+      {kView + "[[terrain]]\n", "terrain = an array at f:4:1: accepted is a section, [terrain]"},
+      {kView + "[terrain]\nheight_map = 3\n",
+       "terrain.height_map = 3 at f:5:14: accepted is the name of a 16-bit grayscale PNG file, quoted"},
+      {kView + "[terrain]\nheight_map = \"\"\n",
+       "terrain.height_map = '' at f:5:14: accepted is the name of a 16-bit grayscale PNG file, quoted"},
+      {kView + "[terrain]\nheight_map = \"a.png\"\nsize = 64\n",
+       "terrain.size given beside height_map at f:6:8: accepted is one of the two"},
+      {kView + "[terrain]\nextent_km = 0\n", "terrain.extent_km = 0 at f:5:13: accepted is a number from 1 to 1000 km"},
+      {kView + "[terrain]\nheight_km = nan\n", "terrain.height_km = nan at f:5:13: accepted is a number from 0 to 20 km"},
+      {kView + "[terrain]\nsize = 64.5\n", "terrain.size = 64.5 at f:5:8: accepted is a whole number from 64 to 4096 samples"},
+      {kView + "[terrain]\nsize = 8192\n", "terrain.size = 8192 at f:5:8: accepted is a whole number from 64 to 4096 samples"},
+      {kView + "[terrain]\nseed = -1\n", "terrain.seed = -1 at f:5:8: accepted is a whole number from 0 to 1e+06"},
+      {kView + "[terrain]\nshadows = 1\n", "terrain.shadows = 1 at f:5:11: accepted is true or false"},
+      {kView + "[terrain]\nsigns_azimuth_deg = 400\n",
+       "terrain.signs_azimuth_deg = 400 at f:5:21: accepted is a number from -360 to 360 deg"},
       {kView + "[settings]\nmie.g = 0.8\n",
        "settings.mie is a table at f:5:1: a knob's name is quoted, for example \"mie.g\" = 0.8"},
       {kView + "[settings]\n\"mie.g\" = [1]\n",

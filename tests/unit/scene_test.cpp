@@ -51,14 +51,19 @@ bool same(const Scene& a, const Scene& b) {
     return x.name == y.name && x.altitude_km == y.altitude_km && x.azimuth_deg == y.azimuth_deg &&
            x.elevation_deg == y.elevation_deg && x.fov_deg == y.fov_deg;
   };
-  return a.name == b.name && a.planet.ground_radius_km == b.planet.ground_radius_km &&
+  const auto terrains = [](const welkin::Terrain& x, const welkin::Terrain& y) {
+    return x.height_map == y.height_map && x.extent_km == y.extent_km && x.height_km == y.height_km && x.size == y.size &&
+           x.seed == y.seed && x.shadows == y.shadows && x.signs_azimuth_deg == y.signs_azimuth_deg;
+  };
+  return a.terrain.has_value() == b.terrain.has_value() && (!a.terrain || terrains(*a.terrain, *b.terrain)) && a.name == b.name && a.planet.ground_radius_km == b.planet.ground_radius_km &&
          a.planet.top_radius_km == b.planet.top_radius_km && a.planet.ground_albedo == b.planet.ground_albedo &&
          std::equal(a.media.begin(), a.media.end(), b.media.begin(), b.media.end(), media) &&
          a.sun.zenith_deg == b.sun.zenith_deg && a.sun.azimuth_deg == b.sun.azimuth_deg &&
          a.sun.angular_radius_deg == b.sun.angular_radius_deg && a.sun.irradiance == b.sun.irradiance &&
          a.sun.disc == b.sun.disc &&
          std::equal(a.views.begin(), a.views.end(), b.views.begin(), b.views.end(), views) &&
-         a.post.exposure_ev == b.post.exposure_ev && a.settings == b.settings;
+         a.post.manual == b.post.manual && a.post.exposure_ev == b.post.exposure_ev &&
+         a.post.compensation_ev == b.post.compensation_ev && a.settings == b.settings;
 }
 
 struct TemporaryDirectory {
@@ -98,6 +103,7 @@ TEST_CASE("awkward values survive the round trip", "[scene]") {
   scene.sun.zenith_deg = 1e-300;
   scene.sun.irradiance = {0, 1e6, 0.1};
   scene.views[0].altitude_km = 384399.9999999999;
+  scene.terrain = welkin::Terrain{.height_map = "/a \"b\"/é.png", .extent_km = 1.1, .shadows = false, .signs_azimuth_deg = 0.1};
   scene.settings = {{"zz.last_first", "64"}, {"a.text", "quote \" backslash \\ é"}, {"mie.phase", "draine"}};
   CHECK(same(scene, welkin::parse_scene(welkin::write_scene(scene), "written")));
 }
@@ -183,6 +189,17 @@ TEST_CASE("sun from date and place, and views that follow it", "[scene]") {
   CHECK(scene.sun.utc == "2003-10-17T19:30:30");
   CHECK(scene.views[0].azimuth_deg == Approx(scene.sun.azimuth_deg + 200 - 360).margin(1e-9));
   CHECK(parse("[sun]\nazimuth_deg = -90\n" + kView).sun.azimuth_deg == 270);
+}
+
+TEST_CASE("a height map lies beside the scene that names it", "[scene]") {
+  const TemporaryDirectory directory;
+  const std::string text = "version = 1\n" + kView + "[terrain]\nheight_map = ";
+  const fs::path beside = directory.write("a.toml", text + "\"sub/../hills.png\"\n");
+  CHECK(welkin::load_scene(beside.string(), kScenes).terrain->height_map == (directory.path / "hills.png").string());
+  const fs::path absolute = directory.write("b.toml", text + "\"/hills.png\"\n");
+  CHECK(welkin::load_scene(absolute.string(), kScenes).terrain->height_map == "/hills.png");
+  CHECK_FALSE(parse(kView).terrain);
+  CHECK(parse(kView + "[terrain]\n").terrain->size == 1024);
 }
 
 TEST_CASE("settings become text in the file's order", "[scene]") {

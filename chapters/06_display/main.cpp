@@ -1,0 +1,36 @@
+// Chapter 06, display: the sky of chapter 05 seen through a light meter, a tone curve and a dither. The light is the same;
+// what a screen makes of it is decided here.
+#include "chapters/02_window/window.hpp"
+#include "chapters/05_single_scattering/single_scattering.hpp"
+#include "chapters/06_display/auto_display.hpp"
+
+using namespace welkin;
+
+namespace {
+
+std::vector<Knob> knobs() {
+  std::vector<Knob> all = march_knobs();
+  for (Knob& knob : display_knobs()) all.push_back(std::move(knob));
+  return all;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // [chapter]
+  const app::Chapter chapter{
+      .number = 6,
+      .name = "06_display",
+      .title = "Display",
+      .whats_new = "A light meter that adapts, seven tone curves side by side, and no bands at dusk.",
+      .try_next = "./welkin run 06 --scene sunset --set display.curve=compare",
+      .sky = true,
+      .knobs = knobs(),
+      .reference = {{"view.steps", "512"}, {"light.steps", "64"}, {"rule", "adapted"}},
+      .standard_views = {{"noon", "horizon"}, {"sunset", "sun"}, {"twilight", "glow"}, {"orbit", "limb"}, {"alien", "horizon"}},
+      .window = open_window_system,
+      .make = [](const app::Context& context) { return std::make_unique<SingleScattering>(context); },
+      .make_display = make_display};
+  return app::run(argc, argv, chapter);
+  // [/chapter]
+}

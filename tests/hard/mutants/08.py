@@ -1,0 +1,23 @@
+"""Mutants of chapter 08, transmittance table: name, file under shaders/, text, what it becomes, test that must fail."""
+MUTANTS = [
+    ("non-inverse texel maps", "08_transmittance_lut/table_map.glsl",
+     "return (uv - 0.5 / float(texels)) / (1.0 - 1.0 / float(texels));", "return (uv - 0.5 / float(texels)) * float(texels) / (float(texels) + 1.0);",
+     "truth: texel maps are inverse of each other"),
+    ("the way down to the lowest point counted once", "08_transmittance_lut/transmittance_lut.glsl",
+     "lowest_km, 0.0) * 2.0;", "lowest_km, 0.0);", "truth: the default table holds 1e-3 on every row"),
+    ("lengths in the table's map without h^2", "08_transmittance_lut/table_map.glsl",
+     "sqrt(max((b_km - a_km) * (2.0 * ground_radius_km + b_km + a_km), 0.0))", "sqrt(max((b_km - a_km) * 2.0 * ground_radius_km, 0.0))",
+     "truth: the default table holds 1e-3 on every row"),
+    ("the inverse map with the ground's radius for the path's", "08_transmittance_lut/table_map.glsl",
+     "(d_0 - d) * (d_0 + d) / (2.0 * r * d)", "(d_0 - d) * (d_0 + d) / (2.0 * radius_km * d)", "truth: texel maps are inverse of each other"),
+    ("mean-only transmittance", "08_transmittance_lut/transmittance_lut.glsl",
+     "return exp(clear_optical_depth(atmosphere, altitude_km, mu) * -1.0);",
+     "return vec3(1.0, 1.0, 1.0) * exp(dot(clear_optical_depth(atmosphere, altitude_km, mu), vec3(-0.33333333, -0.33333333, -0.33333333)));",
+     "truth: the default table holds 1e-3 on every row"),
+    ("a ground that is a kilometre lower than it is", "08_transmittance_lut/transmittance_lut.glsl",
+     "max((1.0 - mu) * (1.0 + mu), 0.0))) < 0.0)", "max((1.0 - mu) * (1.0 + mu), 0.0))) < -1.0)",
+     "hard: a sun below the horizontal seen from the top of the air"),
+    ("the air at the ground in place of that under the top", "08_transmittance_lut/table_texel.glsl",
+     "densities(atmosphere, 0.5 * (path.altitude_km + atmosphere.shape.y))", "densities(atmosphere, 0.0)",
+     "hard: the last kilometre under the top of a dense planet"),
+]

@@ -1,0 +1,20 @@
+"""Mutants of chapter 09, multiple scattering: name, file under shaders/, text, what it becomes, test that must fail."""
+MUTANTS = [
+    ("the angles of the Fibonacci sphere swapped", "09_multiple_scattering_lut/directions.glsl",
+     "direction.look = vec3(s * cos(phi), s * sin(phi), z);\n  direction.weight = 1.0", "direction.look = vec3(cos(phi) * z, sin(phi) * z, s);\n  direction.weight = 1.0",
+     "truth: sets of directions weigh all sides the same"),
+    ("a texel map and an inverse that are none of each other", "09_multiple_scattering_lut/table.glsl",
+     "return unit * (1.0 - 1.0 / size) + vec2(0.5, 0.5) / size;", "return unit + vec2(0.5, 0.5) / size;",
+     "truth: texel maps and their inverses are inverses"),
+    ("the ground bounce without its cosine", "05_single_scattering/single_scattering.glsl",
+     "return exp(-tau) * (mu_sun * 0.31830988618379067);", "return exp(-tau) * 0.31830988618379067;",
+     "truth: second order*"),
+    ("the series without its end: Psi = L2", "09_multiple_scattering_lut/gather.glsl",
+     "return second / (vec3(1.0, 1.0, 1.0) - clamp", "return second + 0.0 * (vec3(1.0, 1.0, 1.0) - clamp",
+     "truth: second order*"),
+    ("the second moment of Cornette-Shanks' lobe with a wrong term", "09_multiple_scattering_lut/moments.glsl",
+     "(11.0 * g2) / 21.0", "(11.0 * g2) / 12.0", "truth: moments of the aerosol's phase function are its integrals"),
+    ("the last panel of the source march lost", "09_multiple_scattering_lut/source_march.glsl",
+     "for (int n = 1; n <= panels; n++) {", "for (int n = 1; n < panels; n++) {",
+     "hard: the transfer of a ray in air that loses nothing is one minus its transmittance"),
+]

@@ -1,0 +1,22 @@
+"""Mutants of chapter 10, sky view table: name, file under shaders/, text, what it becomes, test that must fail."""
+PLACE = "10 map: a direction's place is what trigonometry in double says"
+BACK = "10 map: texel to direction and back is the texel's centre"
+MUTANTS = [
+    ("the azimuth's sine instead of its half's", "10_sky_view_lut/sky_view_map.glsl",
+     "place.across = min(0.5 * sqrt(x * x + y * y), 1.0);", "place.across = min(sqrt(x * x + y * y), 1.0);", PLACE),
+    ("the horizon's dip without h^2", "10_sky_view_lut/sky_view_map.glsl",
+     "sqrt(h * (2.0 * ground_radius_km + h)) / r", "sqrt(h * 2.0 * ground_radius_km) / r", PLACE),
+    ("the angle from the horizon with a wrong sign", "10_sky_view_lut/sky_view_map.glsl",
+     "float s = horizon.y * view.z - horizon.x * sine;", "float s = horizon.y * view.z + horizon.x * sine;", PLACE),
+    ("rows without their root", "10_sky_view_lut/sky_view_map.glsl",
+     "place.from_horizon = sqrt(min(t / half_angle_range(horizon, place.below), 1.0));",
+     "place.from_horizon = min(t / half_angle_range(horizon, place.below), 1.0);", BACK),
+    ("columns of a texel map that is not the inverse", "10_sky_view_lut/sky_view_map.glsl",
+     "place.across = float(texel.x) / float(size.x - 1);", "place.across = float(texel.x) / float(size.x);", BACK),
+    ("ground rows that begin among the sky's", "10_sky_view_lut/sky_view_map.glsl",
+     "half_rows + place.from_horizon * (half_rows - 1.0)", "half_rows - 1.0 + place.from_horizon * half_rows", BACK),
+    ("the table filled with the sun behind", "10_sky_view_lut/fill_sky_view.glsl",
+     "const vec3 sun = vec3(place.z, 0.0, place.y);", "const vec3 sun = vec3(-place.z, 0.0, place.y);", "10 hard: the horizon is a line*"),
+    ("a night stored magnified and read as it is", "10_sky_view_lut/sky_view.glsl",
+     ".rgb * SKY_VIEW_UNIT;", ".rgb;", "10 hard: a night keeps its digits in 16 bits"),
+]

@@ -1,0 +1,22 @@
+"""Mutants of chapter 11, aerial perspective: name, file under shaders/, text, what it becomes, test that must fail."""
+MUTANTS = [
+    ("the last segment of the air is lost", "11_aerial_perspective/aerial.glsl",
+     "for (int k = 0; k < slices; k++) {", "for (int k = 0; k < slices - 1; k++) {", "truth: no segment is lost at the end"),
+    ("a segment ends where its last sample is", "11_aerial_perspective/aerial.glsl",
+     "float dt = (t_b - t_a) / float(samples);", "float dt = (t_b - t_a) * 0.8 / float(samples);", "truth: the air up to a distance, against quadrature"),
+    ("the first slice taken as linear in transmittance", "11_aerial_perspective/aerial.glsl",
+     "part.transmittance = exp(tau * (x * -1.0));", "part.transmittance = exp(tau * -1.0);", "truth: anywhere inside the first slice"),
+    ("higher orders without the transmittance to the eye", "11_aerial_perspective/aerial.glsl",
+     "light.radiance += light.transmittance * source * mean * dt;", "light.radiance += source * mean * dt;", "truth: with all orders the whole ray is chapter 09's march"),
+    ("shadows on light of all orders", "11_aerial_perspective/aerial.glsl",
+     "source += source_at(air, ray, point, density, method.chi, kSourceTable);", "source += sun_behind_terrain(point.t_km, point.altitude_km) * source_at(air, ray, point, density, method.chi, kSourceTable);",
+     "truth: shadow takes its share of single scattering and nothing else"),
+    ("a ground that does not curve away", "11_aerial_perspective/terrain.glsl",
+     " - d2 / (ground_radius_km + upright));", ");", "a place of the map and the point above it are inverse*"),
+    ("vertices of a rim that do not slide all the way", "11_aerial_perspective/terrain.glsl",
+     "/ (0.125 * cells - 2.0), 0.0, 1.0)", "/ (0.2 * cells), 0.0, 1.0)", "rings of the mesh leave no gap"),
+    ("a ridge's shadow without the planet's curvature", "11_aerial_perspective/terrain.glsl",
+     " - s_km * s_km / (2.0 * ground_radius_km);", ";", "scalars: the sun's disc over an edge*"),
+    ("a slope that sees all of the sky", "11_aerial_perspective/ground.glsl",
+     "float open = 0.5 + 0.5 * dot(normal, up);", "float open = 1.0;", "a surface gives back what falls on it"),
+]
