@@ -1,0 +1,37 @@
+// Chapter 07, ground truth: light followed along random paths, all orders of scattering, nothing approximated but the number of
+// paths. Every later method is measured against it.
+#include "chapters/02_window/window.hpp"
+#include "chapters/06_display/auto_display.hpp"
+#include "chapters/07_ground_truth/ground_truth.hpp"
+
+using namespace welkin;
+
+namespace {
+
+std::vector<Knob> knobs() {
+  std::vector<Knob> all = path_knobs();
+  for (Knob& knob : display_knobs()) all.push_back(std::move(knob));
+  return all;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // [chapter]
+  const app::Chapter chapter{
+      .number = 7,
+      .name = "07_ground_truth",
+      .title = "Ground truth",
+      .whats_new = "Random paths through the air, as many scatterings as it takes: right, and slow.",
+      .try_next = "./welkin run 07 --scene sunset --frames 64   (or: --set orders=1, and watch the sky grow dark)",
+      .sky = true,
+      .stochastic = true,
+      .knobs = knobs(),
+      .reference = {{"samples", "4096"}, {"orders", "0"}, {"tracking", "closed_form"}, {"spectral", "hero"}},
+      .standard_views = {{"noon", "horizon"}, {"sunset", "sun"}, {"twilight", "glow"}, {"orbit", "limb"}, {"alien", "horizon"}},
+      .window = open_window_system,
+      .make = [](const app::Context& context) { return std::make_unique<GroundTruth>(context); },
+      .make_display = make_display};
+  return app::run(argc, argv, chapter);
+  // [/chapter]
+}

@@ -1,0 +1,86 @@
+// Directions after a scattering, and how likely each was. Pure functions.
+//
+// A cosine nu between two directions is carried as 1 - nu and 1 + nu, both with all their digits (see phase.glsl).
+#ifndef WELKIN_SAMPLING_GLSL
+#define WELKIN_SAMPLING_GLSL
+
+#include "04_air/medium.glsl"
+
+struct Turn {
+  float one_minus_nu;
+  float one_plus_nu;
+};
+
+// [rayleigh_turn]
+// 3/8 (1 + nu^2) dnu is three quarters of a uniform nu and one quarter of 3/2 nu^2, whose distribution is a cube.
+Turn rayleigh_turn(float which, float u) {
+  Turn turn;
+  if (which < 0.75) {
+    turn.one_minus_nu = 2.0 * u;
+    turn.one_plus_nu = 2.0 * (1.0 - u);
+    return turn;
+  }
+  float signed_u = 2.0 * u - 1.0;
+  float nu = pow(max(abs(signed_u), 1.0e-20), 0.33333333333333333);
+  nu = signed_u < 0.0 ? -nu : nu;
+  turn.one_minus_nu = 1.0 - nu;
+  turn.one_plus_nu = 1.0 + nu;
+  return turn;
+}
+// [/rayleigh_turn]
+
+// [henyey_greenstein_turn]
+// Inverse of the distribution. With a = 1 - g, w = 1 - g + 2 g u (g >= 0) it is 1 - nu = a (1-u) (a (1+g)/w + a) / w: no
+// difference of nearly equal numbers for any g, 0 and almost 1 included. A backward lobe is a forward one seen from behind.
+Turn henyey_greenstein_turn(float g, float u) {
+  float size = abs(g);
+  float a = 1.0 - size;
+  float w = a + 2.0 * size * u;
+  float one_minus_nu = min(a * (1.0 - u) * (a * (1.0 + size) / w + a) / w, 2.0);
+  Turn turn;
+  turn.one_minus_nu = g >= 0.0 ? one_minus_nu : 2.0 - one_minus_nu;
+  turn.one_plus_nu = g >= 0.0 ? 2.0 - one_minus_nu : one_minus_nu;
+  return turn;
+}
+// [/henyey_greenstein_turn]
+
+// [mie_turn]
+// Directions are drawn from Henyey-Greenstein's lobe, or from the two lobes where there are two. Cornette-Shanks and Draine
+// differ from it by a factor between 3/(3 + alpha (1 + 2 g^2)) and 3, which the path's weight takes.
+Turn mie_turn(Atmosphere atmosphere, float which, float u) {
+  float g = atmosphere.mie_extinction.w;
+  if (MIE_PHASE == 3 && which < atmosphere.sun.w) g = atmosphere.ground.w;
+  return henyey_greenstein_turn(g, u);
+}
+
+// Density of mie_turn() per steradian.
+float mie_turn_density(Atmosphere atmosphere, Turn turn) {
+  if (MIE_PHASE == 3) return mie_phase(atmosphere, turn.one_minus_nu, turn.one_plus_nu);
+  return henyey_greenstein_lobe(turn.one_minus_nu, turn.one_plus_nu, atmosphere.mie_extinction.w);
+}
+// [/mie_turn]
+
+// [turned]
+// The direction that makes this turn with `axis`, at an angle around it. 1 - nu enters as it is: a turn of 1e-4 keeps its
+// digits. Frame without square roots or poles: Duff et al. 2017.
+vec3 turned(vec3 axis, Turn turn, float around) {
+  float side = axis.z >= 0.0 ? 1.0 : -1.0;
+  float a = -1.0 / (side + axis.z);
+  float b = axis.x * axis.y * a;
+  vec3 first = vec3(1.0 + side * axis.x * axis.x * a, side * b, -side * axis.x);
+  vec3 second = vec3(b, side + axis.y * axis.y * a, -axis.y);
+  float sine = sqrt(max(turn.one_minus_nu * turn.one_plus_nu, 0.0));
+  float angle = 6.28318530717958648 * around;
+  vec3 to = axis + (first * cos(angle) + second * sin(angle)) * sine - axis * turn.one_minus_nu;
+  return to / length(to);
+}
+
+// A direction into the upper hemisphere with density mu / pi.
+vec3 cosine_hemisphere(float u, float around) {
+  float angle = 6.28318530717958648 * around;
+  float sine = sqrt(u);
+  return vec3(sine * cos(angle), sine * sin(angle), sqrt(1.0 - u));
+}
+// [/turned]
+
+#endif
