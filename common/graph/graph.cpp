@@ -25,7 +25,7 @@ Resource Graph::add(std::string name, const gpu::Buffer& buffer) { return hold({
 void Graph::replace(Resource resource, const gpu::Image& image) {
   resources_[resource].image = &image;
   resources_[resource].state = {};
-  all_again_ = true;  // its content is gone
+  resources_[resource].outdated = true;
 }
 
 void Graph::add(Pass pass) { passes_.push_back({std::move(pass)}); }
@@ -60,20 +60,13 @@ void Graph::compile() {
     }
   // From what is wanted back to what that needs: whoever is not reached is left out.
   order_.clear();
+  for (Counted& counted : passes_) counted.needed = false;
   std::vector<int> mark(passes_.size(), 0);
   for (Resource resource = 0; resource < resources_.size(); ++resource) {
     if (!resources_[resource].wanted) continue;
     if (writer_of(resource) == kNobody) fail("frame graph: '{}' is wanted, and no pass writes it", resources_[resource].name);
     visit(writer_of(resource), mark);
   }
-  // A first frame in which every pass runs, without a device: the barriers to show.
-  barriers_.clear();
-  std::vector<State> states(resources_.size());
-  for (const size_t index : order_)
-    for (const Access& access : passes_[index].pass.accesses) {
-      gpu::Use before;
-      if (depend(states[access.resource], use_of(access), before)) barriers_.push_back({passes_[index].pass.name, resources_[access.resource].name, before, access.use});
-    }
   image_barriers_.reserve(resources_.size());
   buffer_barriers_.reserve(resources_.size());
 }
@@ -91,6 +84,22 @@ void Graph::visit(size_t index, std::vector<int>& mark) {
 }
 // [/compile]
 
+std::vector<Barrier> Graph::barriers(int frame) const {
+  std::vector<Held> held = resources_;
+  for (Held& one : held) one.state = {};
+  std::vector<Barrier> derived;
+  for (int i = 0; i <= frame; ++i) {
+    derived.clear();
+    for (Held& one : held) touched_outside(one);
+    for (const size_t index : order_)
+      for (const Access& access : passes_[index].pass.accesses) {
+        gpu::Use before;
+        if (depend(held[access.resource].state, use_of(access), before)) derived.push_back({passes_[index].pass.name, held[access.resource].name, before, access.use});
+      }
+  }
+  return derived;
+}
+
 // [depend]
 bool Graph::depend(State& state, const gpu::Use& use, gpu::Use& before) {
   const bool new_layout = use.layout != state.layout;
@@ -100,14 +109,14 @@ bool Graph::depend(State& state, const gpu::Use& use, gpu::Use& before) {
     // A layout is changed by the barrier itself, a write that later reads must see.
     const bool needed = before.stage != 0 || new_layout;
     if (writes(use)) state = {.written = use, .layout = use.layout};
-    else state = {.written = {use.stage, VK_ACCESS_2_NONE, use.layout}, .read_stages = use.stage, .visible_stages = use.stage, .visible_access = use.access, .layout = use.layout};
+    else state = {.written = {use.stage, VK_ACCESS_2_NONE, use.layout}, .read_stages = use.stage, .visible = {use}, .readers = 1, .layout = use.layout};
     return needed;
   }
   state.read_stages |= use.stage;
-  const bool visible = (use.stage & ~state.visible_stages) == 0 && (use.access & ~state.visible_access) == 0;
-  if (visible) return false;
+  const auto covers = [&](const gpu::Use& seen) { return (use.stage & ~seen.stage) == 0 && (use.access & ~seen.access) == 0; };
+  if (std::any_of(state.visible.begin(), state.visible.end(), covers)) return false;
   before = {state.written.stage, state.written.access, state.layout};
-  state.visible_stages |= use.stage, state.visible_access |= use.access;
+  state.visible[state.readers++ % state.visible.size()] = use;
   return true;
 }
 // [/depend]
@@ -117,7 +126,7 @@ void Graph::record_barriers(const app::Frame& frame, const Pass& pass) {
   buffer_barriers_.clear();
   for (const Access& access : pass.accesses) {
     Held& held = resources_[access.resource];
-    if (writes(access.use)) held.written_now = true;
+    if (writes(access.use)) held.written_now = true, held.outdated = false;
     gpu::Use before;
     if (!depend(held.state, use_of(access), before)) continue;
     if (drops_barriers_ && !writes(access.use)) continue;
@@ -145,23 +154,35 @@ void Graph::record_barriers(const app::Frame& frame, const Pass& pass) {
   vkCmdPipelineBarrier2(frame.commands, &info);
 }
 
+// Whoever looks at the image between frames has read it; with layout UNDEFINED nobody wants its content any more.
+void Graph::touched_outside(Held& held) {
+  if (held.outside.stage == 0) return;
+  held.state.read_stages |= held.outside.stage;
+  if (held.outside.layout == VK_IMAGE_LAYOUT_UNDEFINED) held.state.layout = VK_IMAGE_LAYOUT_UNDEFINED;
+}
+
 bool Graph::must_run(const Counted& counted, const app::Frame& frame) const {
   if (all_again_ || (counted.pass.changed && counted.pass.changed(frame))) return true;
   return std::any_of(counted.pass.accesses.begin(), counted.pass.accesses.end(),
-                     [&](const Access& access) { return !writes(access.use) && resources_[access.resource].written_now; });
+                     [&](const Access& access) {
+                       const Held& held = resources_[access.resource];
+                       return writes(access.use) ? held.outdated : held.written_now;
+                     });
 }
 
 // [execute]
 void Graph::execute(const app::Frame& frame) {
   for (Held& held : resources_) {
     held.written_now = false;
-    if (held.outside.stage == 0) continue;
-    held.state.read_stages |= held.outside.stage;
-    if (held.outside.layout == VK_IMAGE_LAYOUT_UNDEFINED) held.state.layout = VK_IMAGE_LAYOUT_UNDEFINED;
+    touched_outside(held);
   }
   for (const size_t index : order_) {
     Counted& counted = passes_[index];
     if (!must_run(counted, frame)) continue;
+    if (counted.pass.idle && counted.pass.idle(frame)) {
+      for (const Access& access : counted.pass.accesses) resources_[access.resource].outdated |= writes(access.use);
+      continue;
+    }
     record_barriers(frame, counted.pass);
     const gpu::TimedPass timed(frame.timer, frame.commands, counted.pass.name);
     counted.pass.record(frame);
@@ -181,7 +202,7 @@ std::string Graph::explain() const {
   }
   for (const Counted& counted : passes_)
     if (!counted.needed) text += fmt::format("  {:<20} left out: nobody needs what it writes\n", counted.pass.name);
-  for (const Barrier& barrier : barriers_)
+  for (const Barrier& barrier : barriers())
     text += fmt::format("  before {}: {} from {} to {}\n", barrier.pass, barrier.resource, describe(barrier.before), describe(barrier.after));
   return text;
 }

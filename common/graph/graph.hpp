@@ -6,6 +6,7 @@
 // made visible once, and a frame that reads it again waits for nothing.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <string>
 #include <vector>
@@ -29,6 +30,8 @@ struct Pass {
   // Asked each frame: has something changed that is not a resource (a knob, the camera, the scene)? Without it the pass
   // runs only when one of the resources it reads has been written.
   std::function<bool(const app::Frame&)> changed;
+  // Asked when it would run: does nobody need it in this frame? It then runs in the first frame that does.
+  std::function<bool(const app::Frame&)> idle;
 };
 
 // A barrier that was derived, for people.
@@ -46,7 +49,8 @@ class Graph {
   // with layout UNDEFINED that its old content is not needed: the picture that is displayed and read back.
   Resource add(std::string name, const gpu::Image& image, gpu::Use outside = {});
   Resource add(std::string name, const gpu::Buffer& buffer);
-  // The image at this address was made anew, or another image takes its place. No frame is in flight.
+  // The image at this address was made anew, or another image takes its place: its pass runs in the next frame. No frame
+  // is in flight.
   void replace(Resource resource, const gpu::Image& image);
 
   void add(Pass pass);
@@ -55,15 +59,16 @@ class Graph {
   // Orders and culls; throws Error on a cycle, a second writer, a pass that reads what it writes, and on a wanted or read
   // resource that no pass writes.
   void compile();
-  void redo() { all_again_ = true; }  // pipelines were made anew: every pass runs in the next frame
+  void redo() { all_again_ = true; }  // every pass runs in the next frame
+  void redo(Resource resource) { resources_[resource].outdated = true; }  // the pass that writes it does: it has another pipeline
 
   // Records the passes that have to run, with barriers and timestamps. Allocates nothing.
   void execute(const app::Frame& frame);
 
-  // Passes in order, how often each ran, which were left out; bytes per resource.
+  // Passes in order, how often each ran, which were left out, and the barriers of a first frame, in words.
   std::string explain() const;
-  // The barriers of a frame in which every pass runs for the first time.
-  const std::vector<Barrier>& barriers() const { return barriers_; }
+  // The barriers of frame `frame` if every pass runs in each. Needs no device.
+  std::vector<Barrier> barriers(int frame = 0) const;
   std::vector<std::string> order() const;
   uint64_t runs(const std::string& pass) const;
 
@@ -71,8 +76,8 @@ class Graph {
   struct State {  // what happened to a resource last
     gpu::Use written;                          // the last write
     VkPipelineStageFlags2 read_stages = 0;     // who has read it since
-    VkPipelineStageFlags2 visible_stages = 0;  // and for whom that write has been made visible
-    VkAccessFlags2 visible_access = 0;
+    std::array<gpu::Use, 4> visible{};         // and for whom that write has been made visible; more readers wait again
+    uint32_t readers = 0;
     VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
   };
   struct Held {
@@ -82,6 +87,7 @@ class Graph {
     gpu::Use outside;
     bool wanted = false;
     bool written_now = false;  // in the frame being recorded
+    bool outdated = false;     // its content is gone or no longer right
     State state;
   };
   struct Counted {
@@ -96,6 +102,7 @@ class Graph {
   void visit(size_t pass, std::vector<int>& mark);
   // The dependency this use needs, and the state after it. False: none.
   static bool depend(State& state, const gpu::Use& use, gpu::Use& before);
+  static void touched_outside(Held& held);
   bool must_run(const Counted& counted, const app::Frame& frame) const;
   void record_barriers(const app::Frame& frame, const Pass& pass);
 
@@ -105,7 +112,6 @@ class Graph {
   std::vector<Held> resources_;
   std::vector<Counted> passes_;
   std::vector<size_t> order_;  // of the passes that are needed
-  std::vector<Barrier> barriers_;
   std::vector<VkImageMemoryBarrier2> image_barriers_;
   std::vector<VkBufferMemoryBarrier2> buffer_barriers_;
 };

@@ -54,9 +54,9 @@ Stretch march_panel(Atmosphere atmosphere, AirRay ray, Line line, ScaleCount cou
     passed += air * kGauss4Weight[i];
     passed_width += kGauss4Weight[i];
     vec3 column = vec3(before.column.x + inside.x, before.column.y + inside.y, ozone[i] - before.column.z);
-    column += sun_columns(atmosphere, altitude[i], mu_sun[i]);
+    vec3 tau = optical_depth_and_to_sun(atmosphere, column, altitude[i], mu_sun[i]);
     vec3 source = scattering.rayleigh * air.x + scattering.mie * air.y;
-    after.radiance += source * exp(-extinction(atmosphere, column)) * kGauss4Weight[i];
+    after.radiance += source * exp(-tau) * kGauss4Weight[i];
   }
   after.column.x += passed.x;
   after.column.y += passed.y;

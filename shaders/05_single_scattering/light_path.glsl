@@ -154,6 +154,16 @@ vec3 sun_columns(Atmosphere atmosphere, float altitude_km, float mu_sun) {
   return max(column, vec3(0.0, 0.0, 0.0));
 }
 
+// Optical depth of `column` and of the way from there, a lit point at altitude h, to the sun. A later chapter has a table of
+// the second part and puts its look-up here: vec3 SUN_OPTICAL_DEPTH(atmosphere, altitude_km, mu_sun).
+vec3 optical_depth_and_to_sun(Atmosphere atmosphere, vec3 column, float altitude_km, float mu_sun) {
+#ifdef SUN_OPTICAL_DEPTH
+  return extinction(atmosphere, column) + SUN_OPTICAL_DEPTH(atmosphere, altitude_km, mu_sun);
+#else
+  return extinction(atmosphere, column + sun_columns(atmosphere, altitude_km, mu_sun));
+#endif
+}
+
 // Columns (rayleigh, mie, ozone) in km between two points of a line at s_a <= s_b, where the altitudes are h_a and h_b.
 vec3 columns_between(Atmosphere atmosphere, Line line, float s_a, float h_a, float s_b, float h_b, int panels) {
   vec3 column = vec3(0.0, 0.0, 0.0);

@@ -138,12 +138,28 @@ bool sun_above_horizon(float ground_radius_km, float altitude_km, float mu_sun) 
 // [/shadow]
 
 // [fixed_march]
+// Optical depth from a lit point at altitude h to the sun, by the same rule as the view's (or looked up: see light_path.glsl).
+vec3 marched_optical_depth_to_sun(Atmosphere atmosphere, float altitude_km, float mu_sun, int light_steps, int rule) {
+#ifdef SUN_OPTICAL_DEPTH
+  return SUN_OPTICAL_DEPTH(atmosphere, altitude_km, mu_sun);
+#else
+  float radius_km = atmosphere.shape.x;
+  float light_length = distance_to_shell_from_inside(radius_km, altitude_km, mu_sun, atmosphere.shape.y);
+  vec3 column = vec3(0.0, 0.0, 0.0);
+  for (int j = 0; j < light_steps; j++) {
+    Segment step = quadrature_segment(rule, j, light_steps);
+    float h = altitude_along(radius_km, altitude_km, mu_sun, step.sample_at * light_length);
+    column += densities(atmosphere, max(h, 0.0)) * (step.width * light_length);
+  }
+  return extinction(atmosphere, column);
+#endif
+}
+
 // The rules that sample the ray at places fixed beforehand, for the ray and for the path to the sun alike. Within a
 // segment source and extinction are constant: it gives S dt (1 - exp(-tau)) / tau.
 RayLight fixed_march(Atmosphere atmosphere, AirRay ray, ScatteringTowardsEye scattering, int view_steps, int light_steps,
                      int rule) {
   float radius_km = atmosphere.shape.x;
-  float top_km = atmosphere.shape.y;
   RayLight light;
   light.radiance = vec3(0.0, 0.0, 0.0);
   light.transmittance = vec3(1.0, 1.0, 1.0);
@@ -156,14 +172,8 @@ RayLight fixed_march(Atmosphere atmosphere, AirRay ray, ScatteringTowardsEye sca
     vec3 tau = extinction(atmosphere, density) * dt;
     float mu_sun = mu_sun_along(ray, radius_km, t, altitude);
     if (sun_above_horizon(radius_km, altitude, mu_sun)) {
-      float light_length = distance_to_shell_from_inside(radius_km, altitude, mu_sun, top_km);
-      vec3 column = vec3(0.0, 0.0, 0.0);
-      for (int j = 0; j < light_steps; j++) {
-        Segment step = quadrature_segment(rule, j, light_steps);
-        float h = altitude_along(radius_km, altitude, mu_sun, step.sample_at * light_length);
-        column += densities(atmosphere, max(h, 0.0)) * (step.width * light_length);
-      }
-      vec3 source = (scattering.rayleigh * density.x + scattering.mie * density.y) * exp(-extinction(atmosphere, column));
+      vec3 tau_sun = marched_optical_depth_to_sun(atmosphere, altitude, mu_sun, light_steps, rule);
+      vec3 source = (scattering.rayleigh * density.x + scattering.mie * density.y) * exp(-tau_sun);
       vec3 mean = vec3(mean_transmittance(tau.x), mean_transmittance(tau.y), mean_transmittance(tau.z));
       light.radiance += light.transmittance * source * mean * dt;
     }

@@ -16,19 +16,9 @@
 // T(ground, sun) max(mu_sun, 0) / pi.
 vec3 lit_ground(Atmosphere atmosphere, float mu_sun, int light_steps, int rule) {
   if (mu_sun <= 0.0) return vec3(0.0, 0.0, 0.0);
-  vec3 column = vec3(0.0, 0.0, 0.0);
-  if (rule == kRuleAdapted) {
-    column = sun_columns(atmosphere, 0.0, mu_sun);
-  } else {
-    float radius_km = atmosphere.shape.x;
-    float light_length = distance_to_shell_from_inside(radius_km, 0.0, mu_sun, atmosphere.shape.y);
-    for (int j = 0; j < light_steps; j++) {
-      Segment step = quadrature_segment(rule, j, light_steps);
-      float h = altitude_along(radius_km, 0.0, mu_sun, step.sample_at * light_length);
-      column += densities(atmosphere, max(h, 0.0)) * (step.width * light_length);
-    }
-  }
-  return exp(-extinction(atmosphere, column)) * (mu_sun * 0.31830988618379067);
+  vec3 tau = rule == kRuleAdapted ? optical_depth_and_to_sun(atmosphere, vec3(0.0, 0.0, 0.0), 0.0, mu_sun)
+                                  : marched_optical_depth_to_sun(atmosphere, 0.0, mu_sun, light_steps, rule);
+  return exp(-tau) * (mu_sun * 0.31830988618379067);
 }
 // [/lit_ground]
 

@@ -12,9 +12,10 @@
 #include "common/scene/scene_knobs.hpp"
 #include "tests/gpu/harness.hpp"
 
-namespace {
-thread_local long heap_allocations = 0;
+namespace welkin::test {
+thread_local long heap_allocations = 0;  // 08_graph_test.cpp asks, too: a program has one operator new
 }
+using welkin::test::heap_allocations;
 
 // Counted on the thread that asks: a software driver compiles and draws on threads of its own.
 void* operator new(std::size_t bytes) {

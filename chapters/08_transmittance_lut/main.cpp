@@ -1,0 +1,37 @@
+// Chapter 08, transmittance table: what the air lets through towards the sun is computed once, and then looked up. The
+// frame becomes a graph of passes that run only when what they depend on has changed.
+#include "chapters/02_window/window.hpp"
+#include "chapters/06_display/auto_display.hpp"
+#include "chapters/08_transmittance_lut/table_sky.hpp"
+
+using namespace welkin;
+
+namespace {
+
+std::vector<Knob> knobs() {
+  std::vector<Knob> all = table_sky_knobs();
+  for (Knob& knob : display_knobs()) all.push_back(std::move(knob));
+  return all;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // [chapter]
+  const app::Chapter chapter{
+      .number = 8,
+      .name = "08_transmittance_lut",
+      .title = "Transmittance table",
+      .whats_new = "The air towards the sun computed once and looked up; a frame graph that knows what has to run again.",
+      .try_next = "./welkin run 08 --headless --explain   (or: ./welkin compare 05 08)",
+      .sky = true,
+      .images = {"transmittance"},
+      .knobs = knobs(),
+      .reference = {{"view.steps", "512"}, {"rule", "adapted"}, {"transmittance.width", "1024"}, {"transmittance.height", "1024"}},
+      .standard_views = {{"noon", "horizon"}, {"sunset", "sun"}, {"twilight", "glow"}, {"orbit", "limb"}, {"alien", "horizon"}},
+      .window = open_window_system,
+      .make = [](const app::Context& context) { return std::make_unique<TableSky>(context); },
+      .make_display = make_display};
+  return app::run(argc, argv, chapter);
+  // [/chapter]
+}

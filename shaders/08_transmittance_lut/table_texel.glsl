@@ -1,0 +1,41 @@
+// What one texel of the transmittance table holds. Pure functions; km.
+#ifndef WELKIN_TABLE_TEXEL_GLSL
+#define WELKIN_TABLE_TEXEL_GLSL
+
+#include "05_single_scattering/march.glsl"
+#include "08_transmittance_lut/table_map.glsl"
+
+// [table_columns]
+// Columns (rayleigh, mie, ozone) from altitude h to the top. steps > 0: panels of four Gauss-Legendre points, which ask
+// nothing of the profiles but their densities; steps = 0: the closed form of chapter 05, for exponentials and a tent.
+vec3 table_columns(Atmosphere atmosphere, float altitude_km, float mu, int steps) {
+  if (steps == 0) return sun_columns(atmosphere, altitude_km, mu);
+  float radius_km = atmosphere.shape.x;
+  float d = distance_to_shell_from_inside(radius_km, altitude_km, mu, atmosphere.shape.y);
+  vec3 column = vec3(0.0, 0.0, 0.0);
+  for (int i = 0; i < steps; i++) {
+    Segment segment = quadrature_segment(kRuleGaussLegendre, i, steps);
+    float h = altitude_along(radius_km, altitude_km, mu, segment.sample_at * d);
+    column += densities(atmosphere, max(h, 0.0)) * (segment.width * d);
+  }
+  return column;
+}
+// [/table_columns]
+
+// [table_texel]
+// The texel at `uv` of a table of that size.
+vec3 table_texel(Atmosphere atmosphere, vec2 uv, ivec2 size, int steps) {
+  TablePath path = transmittance_path(atmosphere, uv, size);
+  vec3 tau = extinction(atmosphere, table_columns(atmosphere, path.altitude_km, path.mu, steps));
+  if (TABLE_STORED == kStoredMeanExtinction) {
+    // On the top itself the path has no length: the mean over a path shorter than 1 km is the extinction in its middle.
+    float d = distance_to_shell_from_inside(atmosphere.shape.x, path.altitude_km, path.mu, atmosphere.shape.y);
+    if (d < 1.0) return extinction(atmosphere, densities(atmosphere, 0.5 * (path.altitude_km + atmosphere.shape.y)));
+    return tau / d;
+  }
+  if (TABLE_STORED == kStoredOpticalDepth) return tau;
+  return exp(tau * -1.0);
+}
+// [/table_texel]
+
+#endif

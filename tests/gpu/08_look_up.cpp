@@ -1,0 +1,123 @@
+// See 08_look_up.hpp.
+#include "tests/gpu/08_look_up.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+#include "chapters/08_transmittance_lut/transmittance_lut.hpp"
+#include "common/app/session.hpp"
+#include "common/scene/scene_knobs.hpp"
+#include "tests/gpu/harness.hpp"
+
+namespace welkin::test {
+
+std::vector<LookedUp> look_up(const std::string& scene_name, const Choices& choices, std::span<const Path> paths, Sampler sampler) {
+  const Scene scene = load_scene(scene_name, app::scenes_directory());
+  Settings settings(transmittance_knobs());
+  for (const auto& [name, text] : choices) settings.set(name, text);
+  const std::string no_fault;
+  const app::Context context{device(), scene, settings, no_fault};
+  graph::Graph graph;
+  AirBlock air(context, graph);
+  TransmittanceLut table(context, graph, air);
+
+  constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+  const gpu::Buffer in = gpu::create_buffer(device(), "paths", paths.size() * sizeof(glm::vec4), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::upload);
+  const gpu::Buffer out = gpu::create_buffer(device(), "results", paths.size() * 2 * sizeof(glm::vec4), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::readback);
+  for (size_t i = 0; i < paths.size(); ++i) in.as<glm::vec4>()[i] = {paths[i].altitude_km, paths[i].mu, 0.0f, 0.0f};
+  const gpu::ComputePipeline pipeline = gpu::create_compute_pipeline(
+      device(), sampler == Sampler::coarse ? "tests/08_look_up_coarse.comp" : "tests/08_look_up.comp", {{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}, {1, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, {2, kStorage}, {3, kStorage}},
+      sizeof(uint32_t), table.variant());
+  const gpu::DescriptorSet set = gpu::create_descriptor_set(device(), pipeline.set_layout, pipeline.bindings);
+  gpu::write_buffer(device(), set, 0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, air.buffer());
+  gpu::write_sampled_image(device(), set, 1, table.image(), table.sampler());
+  gpu::write_buffer(device(), set, 2, kStorage, in);
+  gpu::write_buffer(device(), set, 3, kStorage, out);
+  const uint32_t count = static_cast<uint32_t>(paths.size());
+  const graph::Resource results = graph.add("results", out);
+  graph.add({.name = "look up",
+             .accesses = {{air.resource(), gpu::kUniformRead}, {table.resource(), gpu::kSampledRead}, {results, gpu::kComputeWrite}},
+             .record = [&](const app::Frame& frame) {
+               gpu::dispatch(frame.commands, pipeline, set, count, (count + 63) / 64);
+               gpu::buffer_barrier(frame.commands, out.handle, gpu::kComputeWrite, gpu::kHostRead);
+             }});
+  graph.want(results);
+  graph.compile();
+  execute_once(device(), graph);
+
+  std::vector<LookedUp> found(paths.size());
+  for (size_t i = 0; i < paths.size(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      found[i].transmittance[k] = out.as<glm::vec4>()[2 * i][k];
+      found[i].optical_depth[k] = out.as<glm::vec4>()[2 * i + 1][k];
+    }
+  return found;
+}
+
+std::vector<TruePath> path_rows(const std::string& file) {
+  std::ifstream stream(std::string(WELKIN_TEST_DATA) + "/" + file);
+  if (!stream) throw std::runtime_error("cannot read tests/data/" + file);
+  std::vector<TruePath> rows;
+  bool header = true;
+  for (std::string line; std::getline(stream, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    if (std::exchange(header, false)) continue;
+    std::vector<double> v;
+    std::stringstream fields(line);
+    for (std::string field; std::getline(fields, field, ',');) v.push_back(std::stod(field));
+    if (v.size() != 13) throw std::runtime_error(file + ": a row without 13 fields");
+    const Path path{float(v[0]), float(reference::direction_from_degrees(v[1], 0.0)[2])};
+    rows.push_back({path, v[2], {v[7], v[8], v[9]}, {v[10], v[11], v[12]}});
+  }
+  return rows;
+}
+
+std::vector<TruePath> random_paths(const reference::Planet& planet, uint64_t seed, int count) {
+  Random random(seed);
+  const double radius = planet.ground_radius_km, top_km = planet.top_radius_km - radius;
+  std::vector<TruePath> paths;
+  for (int i = 0; i < count; ++i) {
+    double h = i % 2 == 0 ? random.uniform(0.0, top_km) : random.log_uniform(5e-4, top_km);
+    if (i % 5 == 4) h = top_km - random.log_uniform(1e-3, 5.0);
+    h = std::fmin(h, top_km);
+    const double r = radius + h, horizon = -std::sqrt(h * (2.0 * radius + h)) / r;
+    double mu = random.uniform(horizon, 1.0);
+    if (i % 3 == 1) mu = random.uniform(horizon, 0.0);
+    if (i % 3 == 2) {
+      const double lowest = random.log_uniform(1e-3, 30.0);
+      if (lowest >= h) continue;
+      mu = -std::sqrt((h - lowest) * (2.0 * radius + h + lowest)) / r;
+    }
+    const Path path{float(h), float(mu)};
+    const double m = path.mu, a = path.altitude_km, sine = std::sqrt((1.0 - m) * (1.0 + m)), ra = radius + a;
+    const double lowest = m < 0.0 ? a - ra * m * m / (1.0 + sine) : a;
+    if (lowest < 0.0 || a > top_km) continue;
+    const double rho2 = (top_km - a) * (2.0 * radius + top_km + a), root = std::sqrt(ra * m * ra * m + rho2);
+    const auto column = reference::columns(planet, a, m, sine, m >= 0.0 ? rho2 / (ra * m + root) : root - ra * m);
+    TruePath truth{path, lowest, {}, {}};
+    for (int k = 0; k < 3; ++k) {
+      truth.optical_depth[k] = planet.rayleigh_scattering_per_km[k] * column[0] + planet.mie_extinction_per_km[k] * column[1] + planet.ozone_absorption_per_km[k] * column[2];
+      truth.transmittance[k] = std::exp(-truth.optical_depth[k]);
+    }
+    paths.push_back(truth);
+  }
+  return paths;
+}
+
+double worst_error(const std::string& scene, const Choices& choices, std::span<const TruePath> truth, Sampler sampler) {
+  std::vector<Path> paths;
+  for (const TruePath& one : truth) paths.push_back(one.path);
+  const std::vector<LookedUp> found = look_up(scene, choices, paths, sampler);
+  double worst = 0.0;
+  for (size_t i = 0; i < truth.size(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      if (truth[i].transmittance[k] <= 1e-4) continue;
+      const double error = std::abs(found[i].transmittance[k] / truth[i].transmittance[k] - 1.0);
+      if (!(error <= worst)) worst = error >= 0.0 ? error : 1e30;
+    }
+  return worst;
+}
+
+}  // namespace welkin::test
