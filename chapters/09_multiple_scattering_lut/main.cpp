@@ -1,0 +1,38 @@
+// Chapter 09, multiple scattering: light that was scattered twice and more, from a table that is computed when the air
+// changes, and gathered along every ray.
+#include "chapters/02_window/window.hpp"
+#include "chapters/06_display/auto_display.hpp"
+#include "chapters/09_multiple_scattering_lut/all_orders_sky.hpp"
+
+using namespace welkin;
+
+namespace {
+
+std::vector<Knob> knobs() {
+  std::vector<Knob> all = all_orders_knobs();
+  for (Knob& knob : display_knobs()) all.push_back(std::move(knob));
+  return all;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // [chapter]
+  const app::Chapter chapter{
+      .number = 9,
+      .name = "09_multiple_scattering_lut",
+      .title = "Multiple scattering",
+      .whats_new = "All orders of scattering: a small table of the light that has been scattered before.",
+      .try_next = "./welkin compare 05 09 --scene twilight   (or: ./welkin run 09 --set orders=1)",
+      .sky = true,
+      .images = {"multiple_scattering"},
+      .knobs = knobs(),
+      .reference = {{"view.steps", "128"}, {"multiple_scattering.view_steps", "128"}, {"multiple_scattering.size", "64"}, {"multiple_scattering.directions", "256"},
+                    {"multiple_scattering.iterations", "32"}, {"multiple_scattering.steps", "32"}},
+      .standard_views = {{"noon", "horizon"}, {"sunset", "sun"}, {"twilight", "glow"}, {"orbit", "limb"}, {"alien", "horizon"}},
+      .window = open_window_system,
+      .make = [](const app::Context& context) { return std::make_unique<AllOrdersSky>(context); },
+      .make_display = make_display};
+  return app::run(argc, argv, chapter);
+  // [/chapter]
+}

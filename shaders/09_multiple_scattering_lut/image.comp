@@ -1,0 +1,34 @@
+// One camera ray per pixel through all_orders_light(), and the sun's disc behind the air.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 8, local_size_y = 8) in;
+#include "interop/camera.h"
+#include "03_planet_and_rays/camera.glsl"
+layout(binding = 1) uniform sampler2D table;
+vec3 read_multiple_scattering_table(vec2 uv) { return textureLod(table, uv, 0.0).rgb; }
+#include "09_multiple_scattering_lut/variant.glsl"
+#include "05_single_scattering/sun_disc.glsl"
+
+layout(constant_id = 7) const bool SUN_DISC = true;
+layout(binding = 2, rgba32f) uniform writeonly image2D target;
+layout(push_constant) uniform Push {
+  CameraRays camera;
+  ivec4 steps;  // x: first order, y: table
+};
+
+// [image]
+void main() {
+  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, camera.size.xy))) return;
+  const Atmosphere air = atmosphere;
+  const vec3 view = camera_direction(camera, pixel);
+  const vec3 sun = camera.sun.xyz;
+  const float altitude_km = camera.right.w;
+  const vec3 disc = SUN_DISC ? sun_disc_radiance(air.sun.xyz, air.shape.w, one_minus_cosine(view, sun)) : vec3(0.0);
+  const bool on_disc = SUN_DISC && disc.g > 0.0;
+  const RayLight sky = all_orders_light(air, altitude_km, view, sun, steps.x, steps.y, on_disc);
+  vec3 radiance = sky.radiance;
+  if (on_disc && !enter_air(air, altitude_km, view, sun).hits_ground) radiance += sky.transmittance * disc;
+  imageStore(target, pixel, vec4(radiance, 1.0));
+}
+// [/image]

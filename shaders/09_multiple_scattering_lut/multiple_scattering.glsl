@@ -1,0 +1,39 @@
+// The sky with all orders of scattering, marched directly: chapter 05's first order, and the table's light scattered
+// towards the eye all along the ray. Pure functions; km, radiance in units of the solar irradiance of the atmosphere.
+#ifndef WELKIN_MULTIPLE_SCATTERING_GLSL
+#define WELKIN_MULTIPLE_SCATTERING_GLSL
+
+#include "09_multiple_scattering_lut/gather.glsl"
+
+// [all_orders]
+// Radiance and transmittance of a ray, all orders, without the sun's disc. Arguments as scattered_light() of chapter 05,
+// with its adapted rule.
+//   source_steps  samples of the table along the ray, rounded up to a multiple of four
+// The method of moments marches the scaled air, whose beam holds what the aerosol sends straight on; the first order keeps
+// the true phase function there (Nakajima and Tanaka 1988, "TMS"). The transmittance returned is the true air's.
+RayLight all_orders_light(Atmosphere atmosphere, float altitude_km, vec3 view_direction, vec3 sun_direction, int view_steps,
+                          int source_steps, bool want_transmittance) {
+  RayLight result;
+  result.radiance = vec3(0.0, 0.0, 0.0);
+  result.transmittance = vec3(1.0, 1.0, 1.0);
+  AirRay ray = enter_air(atmosphere, altitude_km, view_direction, sun_direction);
+  if (!ray.hits_air) return result;
+  MethodAir method = method_air(atmosphere, MS_METHOD);
+  ScatteringTowardsEye scattering = scattering_towards_eye(atmosphere, one_minus_cosine(view_direction, sun_direction),
+                                                           one_minus_cosine(view_direction, sun_direction * -1.0));
+  RayLight first = adapted_march(method.air, ray, scattering, max(view_steps, 1), ray.hits_ground);
+  SourceRay along = source_ray(method.air, ray);
+  result.radiance = first.radiance + source_march(method.air, along, source_steps, method.chi, kSourceTable);
+  if (ray.hits_ground) {
+    float mu_sun = mu_sun_along(ray, atmosphere.shape.x, ray.length_km, 0.0);
+    vec3 lit = lit_ground(method.air, mu_sun, 1, kRuleAdapted);
+    if (MS_METHOD != kMethodPublished) lit += sky_irradiance(atmosphere, 0.0, mu_sun) * 0.31830988618379067;
+    result.radiance += first.transmittance * vec3(atmosphere.ground) * lit;
+  }
+  if (want_transmittance) result.transmittance = ray_transmittance(atmosphere, along);
+  result.radiance *= vec3(atmosphere.sun);
+  return result;
+}
+// [/all_orders]
+
+#endif

@@ -1,0 +1,167 @@
+// The march that gathers light scattered before: the table's source along the whole ray, lit or in shadow. Pure; km.
+//   L = integral of T(eye, t) S(h, mu_sun, direction) dt
+#ifndef WELKIN_SOURCE_MARCH_GLSL
+#define WELKIN_SOURCE_MARCH_GLSL
+
+#include "05_single_scattering/adapted_march.glsl"
+#include "09_multiple_scattering_lut/table.glsl"
+
+const int kSourceTable = 0;
+const int kSourceUnit = 1;  // isotropic light of radiance 1 everywhere: the march then gives the transfer f of one ray
+
+struct SourceRay {
+  AirRay ray;
+  Line line;
+  ScaleCount count;
+  float x_begin;
+  float x_end;
+};
+
+SourceRay source_ray(Atmosphere atmosphere, AirRay ray) {
+  SourceRay along;
+  along.ray = ray;
+  along.line = line_through(atmosphere.shape.x, ray.altitude_km, ray.mu, ray.sine);
+  along.count = scale_count(atmosphere, along.line);
+  along.x_begin = count_along(along.count, along.line, ray, 0.0);
+  along.x_end = max(count_along(along.count, along.line, ray, ray.length_km), along.x_begin);
+  if (along.x_end - along.x_begin < 0.05) {
+    along.count.straight = true;
+    along.x_begin = 0.0;
+    along.x_end = ray.length_km;
+  }
+  return along;
+}
+
+// Transmittance of a whole ray.
+vec3 ray_transmittance(Atmosphere atmosphere, SourceRay along) {
+  if (along.x_end <= along.x_begin) return vec3(1.0, 1.0, 1.0);
+  return exp(-extinction(atmosphere, columns_to_count(atmosphere, along.ray, along.line, along.count, along.x_end)));
+}
+
+// Source per count at a point, from its densities per count.
+vec3 source_at(Atmosphere atmosphere, AirRay ray, CountedPoint point, vec3 air, vec2 chi, int kind) {
+  if (kind == kSourceUnit) return vec3(atmosphere.rayleigh) * air.x + vec3(atmosphere.mie_scattering) * air.y;
+  float mu_sun = mu_sun_along(ray, atmosphere.shape.x, point.t_km, point.altitude_km);
+  float look_z = clamp(point.s_km / (atmosphere.shape.x + point.altitude_km), -1.0, 1.0);
+  // The sun's horizontal direction at this point: v_x sin = nu - mu mu_sun. A sun at the zenith has none, and no moment
+  // needs one.
+  float sine_sun = sqrt(max((1.0 - mu_sun) * (1.0 + mu_sun), 1.0e-6));
+  float level = sqrt(max((1.0 - look_z) * (1.0 + look_z), 0.0));
+  float look_x = clamp((ray.nu - look_z * mu_sun) / sine_sun, -level, level);
+  if (MS_METHOD != kMethodMoments) {
+    return multiple_scattering(atmosphere, point.altitude_km, mu_sun) * (vec3(atmosphere.rayleigh) * air.x + vec3(atmosphere.mie_scattering) * air.y);
+  }
+  return source_towards_eye(atmosphere, air, multiple_scattering_moments(atmosphere, point.altitude_km, mu_sun), chi, look_x, look_z);
+}
+
+// [source_panel]
+// Four Gauss nodes, the columns up to each from the panel's own densities: chapter 05's panel with another source.
+Stretch source_panel(Atmosphere atmosphere, SourceRay along, vec2 chi, int kind, float ozone_begin, Stretch before, float x_a, float x_b) {
+  float dx = x_b - x_a;
+  vec4 rayleigh;
+  vec4 mie;
+  vec4 ozone;
+  vec4 red;  // source at the nodes, by channel: registers, not an array
+  vec4 green;
+  vec4 blue;
+  for (int i = 0; i < 4; i++) {
+    CountedPoint point = point_at_count(along.count, along.ray, along.line, x_a + dx * kGauss4Node[i]);
+    vec3 air = densities(atmosphere, point.altitude_km) * (point.dt_dx * dx);
+    rayleigh[i] = air.x;
+    mie[i] = air.y;
+    ozone[i] = ozone_from_tangent(atmosphere, along.line, point.altitude_km, point.s_km);
+    vec3 source = source_at(atmosphere, along.ray, point, air, chi, kind);
+    red[i] = source.x;
+    green[i] = source.y;
+    blue[i] = source.z;
+  }
+  Stretch after = before;
+  vec2 passed = vec2(0.0, 0.0);
+  float passed_width = 0.0;
+  for (int i = 0; i < 4; i++) {
+    vec2 air = vec2(rayleigh[i], mie[i]);
+    vec2 inside = vec2(dot(rayleigh, kGauss4UpTo[i]), dot(mie, kGauss4UpTo[i]));
+    inside = max(inside, (passed + air * (kGauss4Node[i] - passed_width)) * 0.5);
+    passed += air * kGauss4Weight[i];
+    passed_width += kGauss4Weight[i];
+    vec3 column = vec3(before.column.x + inside.x, before.column.y + inside.y, ozone[i] - ozone_begin);
+    after.radiance += vec3(red[i], green[i], blue[i]) * exp(-extinction(atmosphere, column)) * kGauss4Weight[i];
+  }
+  after.column.x += passed.x;
+  after.column.y += passed.y;
+  return after;
+}
+// [/source_panel]
+
+const int kSourceCells = 16;
+
+// [source_march]
+// Like chapter 05's adapted march, on one piece: cells of equal count are looked at, panels share them by weight, ends
+// without light are left out.
+vec3 source_march(Atmosphere atmosphere, SourceRay along, int steps, vec2 chi, int kind) {
+  vec3 radiance = vec3(0.0, 0.0, 0.0);
+  if (along.x_end <= along.x_begin) return radiance;
+  int panels = max((steps + 3) / 4, 1);
+  int cells = clamp(2 * panels, 8, kSourceCells);
+  float width = (along.x_end - along.x_begin) / float(cells);
+  vec4 seen[kSourceCells];
+  vec3 peak = vec3(1.0e-37, 1.0e-37, 1.0e-37);
+  vec3 column = vec3(0.0, 0.0, 0.0);
+  float tau_before = 0.0;
+  for (int j = 0; j < cells; j++) {
+    CountedPoint point = point_at_count(along.count, along.ray, along.line, along.x_begin + width * (float(j) + 0.5));
+    vec3 air = densities(atmosphere, point.altitude_km) * point.dt_dx;
+    vec3 depth = extinction(atmosphere, column + air * (0.5 * width));
+    vec3 light = (vec3(atmosphere.rayleigh) * air.x + vec3(atmosphere.mie_scattering) * air.y) * exp(-depth);
+    if (kind == kSourceTable) {
+      light *= multiple_scattering(atmosphere, point.altitude_km, mu_sun_along(along.ray, atmosphere.shape.x, point.t_km, point.altitude_km));
+    }
+    column += air * width;
+    float tau = max(max(depth.x, depth.y), depth.z);
+    float slope = abs(tau - (j == 0 ? tau : tau_before)) / width;
+    seen[j] = vec4(light, slope);
+    if (j == 1) seen[0].w = slope;
+    tau_before = tau;
+    peak = max(peak, light);
+  }
+  int first = cells;
+  int last = -1;
+  float weight[kSourceCells];
+  for (int j = 0; j < cells; j++) {
+    vec3 share = vec3(seen[j]) / peak;
+    if (max(max(share.x, share.y), share.z) >= kUnseen) {
+      first = min(first, j);
+      last = j;
+    }
+    share = share / (share + kDim) * (1.0 + min(seen[j].w, 10.0) * kSlopeWeight);
+    weight[j] = (kLeastWeight + share.x + share.y + share.z) * width;
+  }
+  if (last < first) return radiance;
+  float total = 0.0;
+  for (int j = first; j <= last; j++) total += weight[j];
+
+  float ozone_begin = ozone_from_tangent(atmosphere, along.line, along.ray.altitude_km, (atmosphere.shape.x + along.ray.altitude_km) * along.ray.mu);
+  float from = along.x_begin + width * float(first);
+  Stretch march;
+  march.radiance = radiance;
+  march.column = first > 0 ? columns_to_count(atmosphere, along.ray, along.line, along.count, from) : vec3(0.0, 0.0, 0.0);
+  int cell = first;
+  float passed = 0.0;
+  for (int n = 1; n <= panels; n++) {
+    float wanted = total * float(n) / float(panels);
+    while (cell < last && passed + weight[cell] < wanted) {
+      passed += weight[cell];
+      cell++;
+    }
+    bool at_end = n == panels;
+    if (at_end) cell = last;
+    float into = at_end ? 1.0 : clamp((wanted - passed) / weight[cell], 0.0, 1.0);
+    float to = min(along.x_begin + width * (float(cell) + into), along.x_end);
+    march = source_panel(atmosphere, along, chi, kind, ozone_begin, march, from, to);
+    from = to;
+  }
+  return march.radiance;
+}
+// [/source_march]
+
+#endif

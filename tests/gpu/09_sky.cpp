@@ -1,0 +1,135 @@
+// See 09_sky.hpp.
+#include "tests/gpu/09_sky.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+#include "chapters/09_multiple_scattering_lut/all_orders_sky.hpp"
+#include "common/app/session.hpp"
+#include "tests/gpu/harness.hpp"
+
+namespace welkin::test {
+namespace {
+
+Settings settings_of(const Choices& choices) {
+  Settings settings(all_orders_knobs());
+  for (const auto& [name, text] : choices) settings.set(name, text);
+  return settings;
+}
+
+}  // namespace
+
+std::vector<std::array<float, 12>> evaluate_orders(const std::vector<OrderPart>& parts) {
+  std::vector<float> inputs(parts.size() * 8);
+  std::memcpy(inputs.data(), parts.data(), inputs.size() * sizeof(float));
+  const std::vector<float> outputs = evaluate("tests/09_parts.comp", inputs, 8, 12);
+  std::vector<std::array<float, 12>> results(parts.size());
+  std::memcpy(results.data(), outputs.data(), outputs.size() * sizeof(float));
+  return results;
+}
+
+Scene orders_scene(const std::string& name) { return load_scene(name, app::scenes_directory()); }
+
+std::vector<OrderRow> order_rows(const std::string& file) {
+  std::ifstream stream(std::string(WELKIN_TEST_DATA) + "/" + file);
+  if (!stream) throw std::runtime_error("cannot read tests/data/" + file);
+  std::vector<OrderRow> rows;
+  bool header = true;
+  for (std::string line; std::getline(stream, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    if (std::exchange(header, false)) continue;
+    std::vector<std::string> v;
+    std::stringstream fields(line);
+    for (std::string field; std::getline(fields, field, ',');) v.push_back(field);
+    if (v.size() != 20) throw std::runtime_error(file + ": a row without 20 fields");
+    const auto number = [&](size_t i) { return std::stod(v[i]); };
+    const double horizon_deg = 180.0 - std::asin(6360.0 / (6360.0 + number(0))) * 180.0 / 3.14159265358979324;
+    rows.push_back({{number(0), number(1), number(2), number(3)}, v[6] == "r" ? 0 : v[6] == "g" ? 1 : 2, number(7), number(8),
+                    number(11), number(17), number(18), std::abs(number(1) - horizon_deg) <= 0.5});
+  }
+  return rows;
+}
+
+std::vector<app::ProbeResult> sky_of(const Scene& scene, const Choices& choices, const std::vector<app::ProbeRay>& rays) {
+  const Settings settings = settings_of(choices);
+  const std::string no_fault;
+  AllOrdersSky sky({device(), scene, settings, no_fault});
+  return sky.probe(rays);
+}
+
+std::vector<double> sky_of_rows(const std::string& name, Phase phase, const Choices& choices, const std::vector<OrderRow>& rows) {
+  std::vector<double> got(rows.size());
+  Scene scene = orders_scene(name);
+  scene.medium("mie")->phase = phase;
+  for (const double albedo : {0.0, 0.1, 0.3}) {
+    std::vector<app::ProbeRay> rays;
+    std::vector<size_t> places;
+    for (size_t i = 0; i < rows.size(); ++i)
+      if (rows[i].albedo == albedo) rays.push_back(rows[i].ray), places.push_back(i);
+    if (rays.empty()) continue;
+    scene.planet.ground_albedo = {albedo, albedo, albedo};
+    const std::vector<app::ProbeResult> light = sky_of(scene, choices, rays);
+    for (size_t i = 0; i < places.size(); ++i) got[places[i]] = light[i].radiance[rows[places[i]].channel];
+  }
+  return got;
+}
+
+std::vector<TableTexel> table_of(const Scene& scene, const Choices& choices) {
+  Settings settings = settings_of(choices);
+  settings.set("multiple_scattering.format", "float");
+  const std::string no_fault;
+  const app::Context context{device(), scene, settings, no_fault};
+  graph::Graph graph;
+  AirBlock air(context, graph);
+  MultipleScatteringLut table(context, graph, air);
+  graph.want(table.resource());
+  graph.compile();
+  execute_once(device(), graph);
+  const gpu::Image& image = table.image();
+  const gpu::Buffer back = gpu::create_buffer(device(), "texels", size_t{16} * image.size.width * image.size.height, VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Where::readback);
+  const gpu::CommandPool pool = gpu::create_command_pool(device());
+  gpu::run_once(device(), pool, [&](VkCommandBuffer commands) {
+    gpu::image_barrier(commands, image.handle, gpu::kComputeWrite, gpu::kTransferRead);
+    gpu::copy_image_to_buffer(commands, image, back);
+    gpu::buffer_barrier(commands, back.handle, {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT}, gpu::kHostRead);
+  });
+  const uint32_t side = image.size.width;
+  const bool published = image.size.height == side, logarithm = settings.choice("multiple_scattering.map") == "horizon";
+  std::vector<TableTexel> texels;
+  for (uint32_t y = 0; y < side; ++y)
+    for (uint32_t x = 0; x < side; ++x) {
+      const double u = double(x) / (side - 1), v = double(y) / (side - 1), w = 2.0 * u - 1.0;
+      TableTexel texel{logarithm ? 0.4 * w / (1.4 - std::abs(w)) : w, (logarithm ? v * v : v) * (scene.planet.top_radius_km - scene.planet.ground_radius_km)};
+      for (int k = 0; k < 3; ++k) {
+        const double stored = back.as<glm::vec4>()[y * side + x][k];
+        texel.mean[k] = logarithm ? std::exp2(stored) : stored;
+        texel.irradiance[k] = 3.14159265358979324 * texel.mean[k] * (published ? 1.0 : back.as<glm::vec4>()[(y + 6 * side) * side + x][k]);
+      }
+      texels.push_back(texel);
+    }
+  return texels;
+}
+
+double OrderErrors::quantile(double share) const {
+  if (values.empty()) return 1e30;
+  std::vector<double> sorted = values;
+  std::sort(sorted.begin(), sorted.end());
+  return sorted[std::min(static_cast<size_t>(share * double(sorted.size())), sorted.size() - 1)];
+}
+
+OrderErrors errors_of(const std::vector<OrderRow>& rows, const std::vector<double>& got, Rows which) {
+  OrderErrors errors;
+  for (size_t i = 0; i < rows.size(); ++i) {
+    if (!(rows[i].all > 0.0) || rows[i].all_error > 0.01 * rows[i].all) continue;
+    if (which == Rows::target && (rows[i].near_horizon || rows[i].ray.sun_zenith_deg > 94.0)) continue;
+    const double error = std::abs(got[i] / rows[i].all - 1.0);
+    errors.values.push_back(error >= 0.0 ? error : 1e30);
+  }
+  return errors;
+}
+
+}  // namespace welkin::test

@@ -1,0 +1,85 @@
+// Functions of chapter 09, one item each. Reads 8 floats an item: which function, which air, then its arguments; writes 12.
+//   0 direction   set, n, count, zenith cosine of the horizon  ->  look, weight
+//   1 map         map, size, texel x, texel y  ->  cosine, altitude; uv from these; texel
+//   2 transfer    altitude, sun's cosine, directions, set, steps  ->  second order, f, Psi
+//   3 furnace     altitude, cosine, steps  ->  transfer of one ray in isotropic light of radiance 1, plus its transmittance
+//   4 close       L2, f  ->  Psi
+//   5 moments     g, alpha  ->  chi 1, 2, 3
+// Airs: 0 Earth, 1 the dense planet, 2 and 3 the same without any absorption.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 64) in;
+const bool HAS_RAYLEIGH = true, HAS_MIE = true, HAS_OZONE = true;
+const int MIE_PHASE = 1, MS_METHOD = 0, MS_MAP = 1, MS_SIZE = 32;
+vec3 read_multiple_scattering_table(vec2 uv) { return vec3(0.0); }
+#include "09_multiple_scattering_lut/multiple_scattering.glsl"
+
+layout(binding = 0, std430) readonly buffer Inputs {
+  float inputs[];
+};
+layout(binding = 1, std430) writeonly buffer Outputs {
+  float outputs[];
+};
+layout(push_constant) uniform Push {
+  uint count;
+};
+
+Atmosphere air_of(int which) {
+  Atmosphere air;
+  const bool dense = (which & 1) == 1, conservative = which >= 2;
+  air.rayleigh = dense ? vec4(0.149, 0.142, 0.051, 18.416) : vec4(5.802e-3, 13.558e-3, 33.1e-3, 8.0);
+  air.mie_scattering = dense ? vec4(0.046, 0.047, 0.057, 13.143) : vec4(vec3(3.996e-3), 1.2);
+  air.mie_extinction = dense ? vec4(0.082, 0.071, 0.058, 0.8) : vec4(vec3(4.44e-3), 0.8);
+  if (conservative) air.mie_extinction.xyz = air.mie_scattering.xyz;
+  air.ozone = vec4(conservative ? vec3(0.0) : vec3(0.65e-3, 1.881e-3, 0.085e-3), 25.0);
+  air.shape = vec4(6360.0, 100.0, 15.0, 0.00465);
+  air.ground = vec4(vec3(conservative ? 1.0 : 0.3), 0.0);
+  air.sun = vec4(vec3(1.0), 0.0);
+  return air;
+}
+
+void main() {
+  const uint item = gl_GlobalInvocationID.x;
+  if (item >= count) return;
+  float a[6];
+  for (int i = 0; i < 6; ++i) a[i] = inputs[8 * item + 2 + i];
+  const int kind = int(inputs[8 * item]);
+  const Atmosphere air = air_of(int(inputs[8 * item + 1]));
+  vec4 result[3] = vec4[](vec4(0.0), vec4(0.0), vec4(0.0));
+  if (kind == 0) {
+    const WeightedDirection direction = direction_of_set(int(a[0]), int(a[1]), int(a[2]), a[3]);
+    result[0] = vec4(direction.look, direction.weight);
+  } else if (kind == 1) {
+    const vec2 point = table_point(int(a[0]), air.shape.y, table_unit_of_texel(vec2(a[2], a[3]), a[1]));
+    const vec2 uv = table_uv(table_unit(int(a[0]), air.shape.y, point.y, point.x), a[1]);
+    result[0] = vec4(point, uv);
+    result[1] = vec4(uv * a[1] - 0.5, 0.0, 0.0);
+  } else if (kind == 2) {
+    vec3 second = vec3(0.0), transfer = vec3(0.0);
+    const int directions = int(a[2]);
+    for (int n = 0; n < directions; ++n) {
+      const WeightedDirection direction = direction_of_set(int(a[3]), n, directions, horizon_cosine(air.shape.x, a[0]));
+      const Transfer one = published_transfer(air, a[0], direction.look, sun_at(a[1]), int(a[4]));
+      second += one.second * direction.weight;
+      transfer += one.transfer * direction.weight;
+    }
+    const vec3 psi = close_series(second, transfer);
+    result[0] = vec4(second, transfer.x);
+    result[1] = vec4(transfer.yz, psi.xy);
+    result[2].x = psi.z;
+  } else if (kind == 3) {
+    const AirRay ray = enter_air(air, a[0], vec3(sqrt(max(1.0 - a[1] * a[1], 0.0)), 0.0, a[1]), vec3(0.0, 0.0, 1.0));
+    if (ray.hits_air) {
+      const SourceRay along = source_ray(air, ray);
+      result[0].xyz = source_march(air, along, int(a[2]), vec2(0.0), kSourceUnit);
+      result[1].xyz = ray_transmittance(air, along);
+    } else {
+      result[1].xyz = vec3(1.0);
+    }
+  } else if (kind == 4) {
+    result[0].xyz = close_series(vec3(a[0]), vec3(a[1]));
+  } else {
+    result[0].xyz = draine_moments(a[0], a[1]);
+  }
+  for (int i = 0; i < 12; ++i) outputs[12 * item + i] = result[i / 4][i % 4];
+}
