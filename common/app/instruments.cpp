@@ -104,11 +104,11 @@ std::vector<std::vector<double>> ordered_by_pipeline(std::vector<std::vector<dou
   return ladder;
 }
 
-// What the errors of a sweep are errors against: the truth of a lower chapter, or this program at its best.
+// What the errors of a sweep are errors against: this program at its best, or the truth of a lower chapter.
 Image draw_reference(OtherScene& other, Program& program, VkExtent2D size) {
   const Session& session = other.session;
   const CameraPose pose = session.first_pose();
-  if (!session.chapter.truth) {
+  if (!session.chapter.truth || !session.chapter.reference.empty()) {
     for (const auto& [name, text] : session.chapter.reference) other.settings.set(name, text);
     program.rebuild();
     Renderer renderer(session.context, session.chapter, program, size);
@@ -119,8 +119,9 @@ Image draw_reference(OtherScene& other, Program& program, VkExtent2D size) {
 }
 
 std::string describe_reference(const Chapter& chapter, uint32_t frames) {
-  std::string text = chapter.truth ? fmt::format("path tracer, {} frames", frames > 0 ? frames : chapter.truth->frames) : "";
-  for (const auto& [name, value] : chapter.truth ? chapter.truth->settings : chapter.reference) text += (text.empty() ? "" : " ") + name + "=" + value;
+  const bool traced = chapter.truth && chapter.reference.empty();
+  std::string text = traced ? fmt::format("path tracer, {} frames", frames > 0 ? frames : chapter.truth->frames) : "";
+  for (const auto& [name, value] : traced ? chapter.truth->settings : chapter.reference) text += (text.empty() ? "" : " ") + name + "=" + value;
   return text;
 }
 

@@ -1,0 +1,39 @@
+// Chapter 10, sky view table: the sky seen from where the camera is, computed at a few thousand directions and looked up
+// for every pixel; and the direct march where a table of one altitude cannot show the planet.
+#include "chapters/02_window/window.hpp"
+#include "chapters/06_display/auto_display.hpp"
+#include "chapters/07_ground_truth/ground_truth.hpp"
+#include "chapters/10_sky_view_lut/sky.hpp"
+
+using namespace welkin;
+
+namespace {
+
+std::vector<Knob> knobs() {
+  std::vector<Knob> all = sky_knobs();
+  for (Knob& knob : display_knobs()) all.push_back(std::move(knob));
+  return all;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // [chapter]
+  const app::Chapter chapter{
+      .number = 10,
+      .name = "10_sky_view_lut",
+      .title = "Sky view table",
+      .whats_new = "The whole sky in a small table around the horizon and the sun; where it fails, the march comes back.",
+      .try_next = "./welkin compare 05 10 --scene sunset   (or: ./welkin run 10 --headless --explain)",
+      .sky = true,
+      .images = {"sky_view", "transmittance", "multiple_scattering"},
+      .knobs = knobs(),
+      .reference = {{"sky_view.method", "march"}, {"view.steps", "128"}, {"multiple_scattering.view_steps", "64"}},
+      .truth = app::Truth{path_knobs(), {{"samples", "64"}}, [](const app::Context& context) { return std::make_unique<GroundTruth>(context); }, 32},
+      .standard_views = {{"noon", "horizon"}, {"sunset", "sun"}, {"twilight", "glow"}, {"orbit", "limb"}, {"alien", "horizon"}},
+      .window = open_window_system,
+      .make = [](const app::Context& context) { return std::make_unique<SkyProgram>(context); },
+      .make_display = make_display};
+  return app::run(argc, argv, chapter);
+  // [/chapter]
+}

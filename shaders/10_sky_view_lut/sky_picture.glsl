@@ -1,0 +1,50 @@
+// One look-up per pixel; with SUN_DISC defined, the sun's disc behind the air. What the scene does not show is not compiled.
+#ifndef WELKIN_SKY_PICTURE_GLSL
+#define WELKIN_SKY_PICTURE_GLSL
+
+layout(local_size_x = 8, local_size_y = 8) in;
+#include "interop/camera.h"
+#include "03_planet_and_rays/camera.glsl"
+#include "04_air/variant.glsl"
+#include "04_air/medium.glsl"
+#ifdef SUN_DISC
+#define TRANSMITTANCE_BINDING 2
+#include "08_transmittance_lut/table.glsl"
+#include "04_air/phase.glsl"
+#include "05_single_scattering/march.glsl"
+#include "05_single_scattering/sun_disc.glsl"
+#endif
+layout(constant_id = 6) const float SKY_VIEW_UNIT = 1.0;
+#define SKY_VIEW_BINDING 1
+#include "10_sky_view_lut/sky_view.glsl"
+
+layout(binding = 0, std140) uniform Air {
+  Atmosphere atmosphere;
+};
+layout(binding = 3, rgba32f) uniform writeonly image2D target;
+layout(push_constant) uniform Push {
+  CameraRays camera;
+};
+
+// [sky]
+void main() {
+  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, camera.size.xy))) return;
+  const vec3 view = camera_direction(camera, pixel);
+  const vec3 sun = camera.sun.xyz;
+  const float altitude_km = camera.right.w;
+  vec3 radiance = sky_view_radiance(atmosphere.shape.x, altitude_km, view, sun);
+#ifdef SUN_DISC
+  // The disc is too small for any table: it is drawn, through the air that chapter 08's table knows.
+  const vec3 disc = sun_disc_radiance(atmosphere.sun.xyz, atmosphere.shape.w, one_minus_cosine(view, sun));
+  if (disc.g > 0.0) {
+    const AirRay ray = enter_air(atmosphere, altitude_km, view, sun);
+    const vec3 through = ray.hits_air ? transmittance_to_top(atmosphere, ray.altitude_km, ray.mu) : vec3(1.0);
+    if (!ray.hits_ground) radiance += disc * through;
+  }
+#endif
+  imageStore(target, pixel, vec4(radiance, 1.0));
+}
+// [/sky]
+
+#endif
