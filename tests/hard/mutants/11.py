@@ -3,7 +3,7 @@ MUTANTS = [
     ("the last segment of the air is lost", "11_aerial_perspective/aerial.glsl",
      "for (int k = 0; k < slices; k++) {", "for (int k = 0; k < slices - 1; k++) {", "truth: no segment is lost at the end"),
     ("a segment ends where its last sample is", "11_aerial_perspective/aerial.glsl",
-     "float dt = (t_b - t_a) / float(samples);", "float dt = (t_b - t_a) * 0.8 / float(samples);", "truth: the air up to a distance, against quadrature"),
+     "float dt = (t_b - t_a) / float(samples);", "float dt = (t_b - t_a) * 0.8 / float(samples);", "truth: the air up to a distance*"),
     ("the first slice taken as linear in transmittance", "11_aerial_perspective/aerial.glsl",
      "part.transmittance = exp(tau * (x * -1.0));", "part.transmittance = exp(tau * -1.0);", "truth: anywhere inside the first slice"),
     ("higher orders without the transmittance to the eye", "11_aerial_perspective/aerial.glsl",

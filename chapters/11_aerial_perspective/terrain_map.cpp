@@ -1,0 +1,162 @@
+// Making and reading height maps. See terrain_map.hpp.
+#include "chapters/11_aerial_perspective/terrain_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/error.hpp"
+#include "common/image/atomic_file.hpp"
+#include "common/image/png.hpp"
+#include "common/scene/one_line.hpp"
+
+namespace welkin {
+namespace {
+
+constexpr int kLargestSide = 4096;
+constexpr size_t kLargestFile = 256u << 20;  // bytes
+
+double smooth_step(double from, double to, double x) {
+  const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
+  return t * t * (3.0 - 2.0 * t);
+}
+
+// [noise]
+// A number for every lattice point and seed: integers only, so that all machines agree.
+uint32_t hash(int32_t x, int32_t y, uint32_t seed) {
+  uint32_t h = static_cast<uint32_t>(x) * 0x9E3779B1u ^ static_cast<uint32_t>(y) * 0x85EBCA77u ^ seed * 0xC2B2AE3Du;
+  h ^= h >> 15, h *= 0x2C1B3C6Du, h ^= h >> 12, h *= 0x297A2D39u, h ^= h >> 15;
+  return h;
+}
+
+// Gradient noise, about -1 ... 1, smooth to its second derivative. Eight directions, whose components need no sine.
+double noise(double x, double y, uint32_t seed) {
+  const double floor_x = std::floor(x), floor_y = std::floor(y);
+  const int32_t i = static_cast<int32_t>(floor_x), j = static_cast<int32_t>(floor_y);
+  const double u = x - floor_x, v = y - floor_y;
+  const auto corner = [&](int32_t di, int32_t dj) {
+    static constexpr double kDirections[8][2] = {{1, 0}, {0.70710678118654752, 0.70710678118654752}, {0, 1}, {-0.70710678118654752, 0.70710678118654752},
+                                                 {-1, 0}, {-0.70710678118654752, -0.70710678118654752}, {0, -1}, {0.70710678118654752, -0.70710678118654752}};
+    const double* direction = kDirections[hash(i + di, j + dj, seed) >> 29];
+    return direction[0] * (u - di) + direction[1] * (v - dj);
+  };
+  const auto fade = [](double t) { return t * t * t * (t * (t * 6.0 - 15.0) + 10.0); };
+  const double a = fade(u), b = fade(v);
+  const double low = corner(0, 0) + a * (corner(1, 0) - corner(0, 0)), high = corner(0, 1) + a * (corner(1, 1) - corner(0, 1));
+  return 1.5 * (low + b * (high - low));
+}
+
+// Ridges: 1 - |noise| has its crests where noise changes sign. Finer octaves grow on crests and leave valleys smooth.
+double ridges(double x, double y, uint32_t seed) {
+  double sum = 0.0, share = 0.5, carried = 1.0;
+  for (uint32_t octave = 0; octave < 7; ++octave) {
+    const double crest = std::max(1.0 - std::abs(noise(x, y, seed + octave)), 0.0);
+    const double value = crest * crest * carried;
+    sum += share * value;
+    carried = std::min(value * 1.6, 1.0);
+    // The next octave is turned by atan(3/4), so that the lattices never line up.
+    const double turned_x = 2.03 * (0.8 * x - 0.6 * y) + 17.3, turned_y = 2.03 * (0.6 * x + 0.8 * y) - 9.1;
+    x = turned_x, y = turned_y, share *= 0.5;
+  }
+  return sum;
+}
+// [/noise]
+
+// [hills]
+// A plain around the scene's place, ranges further out, and level ground again at the map's edge, where the sphere begins.
+// Relative height; x, y in km.
+double hill(double x, double y, double extent_km, uint32_t seed) {
+  const double from_centre = std::sqrt(x * x + y * y) / (0.5 * extent_km);
+  const double to_edge = std::max(std::abs(x), std::abs(y)) / (0.5 * extent_km);
+  const double ranges = smooth_step(0.13, 0.46, from_centre + 0.07 * noise(x / 9.0, y / 9.0, seed + 40));
+  const double rolling = 0.02 * (1.0 + noise(x / 3.7, y / 3.7, seed + 50) + 0.3 * noise(x / 1.1, y / 1.1, seed + 51));
+  const double crest = ridges(x / 15.0, y / 15.0, seed);
+  return (1.0 - smooth_step(0.8, 0.97, to_edge)) * (rolling + ranges * crest * crest * 1.7);
+}
+// [/hills]
+
+std::vector<float> make_heights(const Terrain& terrain) {
+  const int n = terrain.size;
+  std::vector<float> heights(static_cast<size_t>(n) * n);
+  float highest = 0.0f;
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      const double x = ((i + 0.5) / n - 0.5) * terrain.extent_km, y = (0.5 - (j + 0.5) / n) * terrain.extent_km;
+      float& height = heights[static_cast<size_t>(j) * n + i];
+      height = static_cast<float>(std::max(hill(x, y, terrain.extent_km, static_cast<uint32_t>(terrain.seed) * 101u), 0.0));
+      highest = std::max(highest, height);
+    }
+  for (float& height : heights) height *= static_cast<float>(terrain.height_km) / std::max(highest, 1e-6f);
+  return heights;
+}
+
+// [read]
+std::vector<float> read_heights(const Terrain& terrain, int& size) {
+  const std::string name = one_line(terrain.height_map);
+  constexpr const char* accepted = "accepted is a square 16-bit grayscale PNG of 2 to 4096 samples a side";
+  // The header first: decoders widen 8-bit files silently, and a height map of 256 steps is a staircase.
+  const std::string bytes = read_file(terrain.height_map, kLargestFile);
+  const auto big_endian = [&](size_t at) {
+    uint32_t value = 0;
+    for (size_t i = 0; i < 4; ++i) value = value << 8 | static_cast<uint8_t>(bytes[at + i]);
+    return value;
+  };
+  if (bytes.size() < 33 || bytes.compare(1, 3, "PNG") != 0 || bytes.compare(12, 4, "IHDR") != 0) fail("height map {}: not a PNG file; {}", name, accepted);
+  const uint32_t width = big_endian(16), height = big_endian(20);
+  const int depth = bytes[24], colour = bytes[25];
+  if (depth != 16 || colour != 0) fail("height map {}: {} bits a sample, {}; {}", name, depth, colour == 0 ? "grayscale" : "not grayscale alone", accepted);
+  if (width != height) fail("height map {}: {} x {} samples, not square; {}", name, width, height, accepted);
+  if (width < 2 || width > kLargestSide) fail("height map {}: {} samples a side; {}", name, width, accepted);
+  const Image16 picture = image::read_png16(terrain.height_map);
+  size = static_cast<int>(width);
+  std::vector<float> heights(size_t{width} * width);
+  for (size_t i = 0; i < heights.size(); ++i) heights[i] = static_cast<float>(picture.rgb[3 * i] / 65535.0 * terrain.height_km);
+  return heights;
+}
+// [/read]
+
+// [slopes_and_cover]
+// Slopes by central differences; cover from slope and height: rock where it is steep, snow high up, grass else, bare ground
+// towards the edge of the map, where it has to look like the sphere beyond.
+void add_slopes_and_cover(TerrainMap& map) {
+  const int n = map.size;
+  const double texel_km = map.extent_km / n;
+  const auto height = [&](int i, int j) { return static_cast<double>(map.height_km[static_cast<size_t>(std::clamp(j, 0, n - 1)) * n + std::clamp(i, 0, n - 1)]); };
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      const double dx = (height(i + 1, j) - height(i - 1, j)) / (2.0 * texel_km), dy = (height(i, j - 1) - height(i, j + 1)) / (2.0 * texel_km);
+      const double x = ((i + 0.5) / n - 0.5) * map.extent_km, y = (0.5 - (j + 0.5) / n) * map.extent_km;
+      const double steep = std::sqrt(dx * dx + dy * dy), patch = noise(x / 1.3, y / 1.3, 7u) + 0.5 * noise(x / 0.4, y / 0.4, 8u);
+      const double to_edge = std::max(std::abs(x), std::abs(y)) / (0.5 * map.extent_km);
+      double bare = std::max(smooth_step(0.7, 0.95, to_edge), 0.55 * smooth_step(-0.3, 0.9, patch) * (1.0 - smooth_step(0.05, 0.3, height(i, j))));
+      const double snow = smooth_step(1.5, 1.9, height(i, j) + 0.2 * patch - 0.5 * steep) * (1.0 - bare);
+      const double rock = smooth_step(0.2, 0.45, steep + 0.08 * patch + 0.12 * smooth_step(0.8, 1.6, height(i, j))) * (1.0 - bare - snow);
+      const auto share = [](double value) { return static_cast<uint8_t>(std::lround(std::clamp(value, 0.0, 1.0) * 255.0)); };
+      map.slope.push_back({static_cast<float>(dx), static_cast<float>(dy)});
+      map.cover.push_back({share(1.0 - bare - snow - rock), share(rock), share(snow), share(bare)});
+    }
+}
+// [/slopes_and_cover]
+
+}  // namespace
+
+TerrainMap make_terrain_map(const Terrain& terrain) {
+  TerrainMap map{.size = terrain.size, .extent_km = terrain.extent_km};
+  map.height_km = terrain.height_map.empty() ? make_heights(terrain) : read_heights(terrain, map.size);
+  map.highest_km = *std::max_element(map.height_km.begin(), map.height_km.end());
+  map.slope.reserve(map.height_km.size());
+  map.cover.reserve(map.height_km.size());
+  add_slopes_and_cover(map);
+  return map;
+}
+
+double height_at(const TerrainMap& map, double x_km, double y_km) {
+  if (std::max(std::abs(x_km), std::abs(y_km)) > 0.5 * map.extent_km) return 0.0;
+  const double column = std::clamp((x_km / map.extent_km + 0.5) * map.size - 0.5, 0.0, map.size - 1.0);
+  const double row = std::clamp((0.5 - y_km / map.extent_km) * map.size - 0.5, 0.0, map.size - 1.0);
+  const int i = std::min(static_cast<int>(column), map.size - 2), j = std::min(static_cast<int>(row), map.size - 2);
+  const double u = column - i, v = row - j;
+  const auto at = [&](int x, int y) { return static_cast<double>(map.height_km[static_cast<size_t>(y) * map.size + x]); };
+  return (at(i, j) * (1 - u) + at(i + 1, j) * u) * (1 - v) + (at(i, j + 1) * (1 - u) + at(i + 1, j + 1) * u) * v;
+}
+
+}  // namespace welkin

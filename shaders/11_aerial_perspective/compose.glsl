@@ -1,0 +1,100 @@
+// What the camera sees: terrain or a sign, lit by sun and sky, through the air in front of it; the sky where neither is.
+// Included by compose.comp (FROXELS 1) and compose_march.comp (0: a march per pixel instead, and nothing to bind for them).
+layout(local_size_x = 8, local_size_y = 8) in;
+#include "11_aerial_perspective/block.glsl"
+#include "11_aerial_perspective/ground.glsl"
+#include "11_aerial_perspective/signs.glsl"
+
+layout(constant_id = 22) const int MARCH_SLICES = 64;
+layout(constant_id = 23) const bool HAS_SIGNS = true;
+layout(constant_id = 24) const float NEAR_KM = 1.0e-4;
+
+#if FROXELS
+layout(binding = 3) uniform sampler3D radiance;
+layout(binding = 4) uniform sampler3D transmittance;
+#endif
+layout(binding = 5) uniform sampler2D depth_map;
+layout(binding = 6) uniform sampler2D slope_map;
+layout(binding = 7) uniform sampler2D cover_map;
+layout(binding = 8, rgba32f) uniform readonly image2D sky;
+layout(binding = 9, rgba32f) uniform writeonly image2D target;
+
+#if FROXELS
+// [froxel_light]
+// The air up to a distance from the froxels, filtered. place: 0 ... 1 over the picture.
+RayLight froxel_light(vec2 place, float t_km) {
+  const vec3 count = vec3(textureSize(radiance, 0));
+  const float s = slices_before(t_km, count.z, east.w, POWER);
+  // Texel k holds the end of slice k: s = k + 1 is found at its centre.
+  const vec3 uvw = vec3(0.5 / count.xy + place * (1.0 - 1.0 / count.xy), (max(s, 1.0) - 0.5) / count.z);
+  const vec4 stored = textureLod(radiance, uvw, 0.0);
+  RayLight light;
+  light.radiance = stored.rgb;
+  light.transmittance = HAS_COLOUR ? textureLod(transmittance, uvw, 0.0).rgb : stored.aaa;
+  if (s < 1.0) light = within_first_slice(light, t_km / slice_end(1.0, count.z, east.w, POWER));
+  return light;
+}
+// [/froxel_light]
+#endif
+
+// The same without them: from above the air and beyond the last slice there are none.
+RayLight air_before(Atmosphere air, vec2 place, vec3 view, float t_km) {
+  const bool above = camera.right.w >= air.shape.y;
+#if FROXELS
+  if (!above && t_km <= east.w) return froxel_light(place, t_km);
+#endif
+  const ClippedRay ray = clipped_ray(view, camera.right.w);
+  if (!ray.air.hits_air) return no_air();
+  RayLight light = march_to(method_air(air, MS_METHOD), ray.air, scattering_along(air, view, camera.sun.xyz), max(t_km - ray.begins_km, 0.0), MARCH_SLICES, SAMPLES, above ? 1.0 : POWER);
+  light.radiance *= air.sun.xyz;
+  return light;
+}
+
+// [compose]
+void main() {
+  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, camera.size.xy))) return;
+  const Atmosphere air = atmosphere;
+  const vec3 view = camera_direction(camera, pixel);
+  const vec3 direction = to_global(view), sun = to_global(camera.sun.xyz);
+
+  const float depth = texelFetch(depth_map, pixel, 0).r;
+  float t_km = depth > 0.0 ? distance_from_depth(depth, NEAR_KM, dot(view, normalize(camera.forward.xyz))) : 1.0e9;
+  bool seen = depth > 0.0;
+  float paint = -1.0;
+  vec3 normal = vec3(0.0);
+  if (HAS_SIGNS) {
+    for (int k = 0; k < kSigns; ++k) {
+      const SignHit hit = meet_sign(k, air.shape.x, north.w, position.xyz, direction);
+      if (hit.t_km < 0.0 || hit.t_km >= t_km) continue;
+      t_km = hit.t_km, paint = hit.paint, normal = hit.normal, seen = true;
+    }
+  }
+  if (!seen) {
+    imageStore(target, pixel, imageLoad(sky, pixel));
+    return;
+  }
+
+  const vec3 point = position.xyz + direction * t_km;
+  const vec2 place = place_below(air.shape.x, point);
+  const vec3 up = up_at(air.shape.x, place);
+  const float altitude = max(altitude_of(air.shape.x, point), 0.0);
+  vec3 albedo = vec3(paint);
+  if (paint < 0.0) {
+    const vec2 uv = map_uv(place, position.w);
+    const Ground ground = ground_at(textureLod(slope_map, uv, 0.0).rg, textureLod(cover_map, uv, 0.0), air.ground.rgb, place, up, t_km / float(camera.size.y));
+    albedo = ground.albedo, normal = ground.normal;
+  } else if (dot(normal, direction) > 0.0) {
+    normal = -normal;
+  }
+  const float mu_sun = dot(sun, up);
+  const MethodAir method = method_air(air, MS_METHOD);
+  const float seen_sun = HAS_SHADOWS ? sun_over(place, altitude) : 1.0;
+  const vec3 beam = sun_through_air(method.air, altitude, mu_sun) * seen_sun;
+  const vec3 from_sky = HIGHER_ORDERS ? sky_irradiance(air, altitude, mu_sun) : vec3(0.0);
+  const vec3 lit = surface_light(albedo, air.ground.rgb, normal, up, sun, beam, from_sky) * air.sun.rgb;
+
+  const RayLight before = air_before(air, (vec2(pixel) + 0.5) / vec2(camera.size.xy), view, t_km);
+  imageStore(target, pixel, vec4(before.radiance + before.transmittance * lit, 1.0));
+}
+// [/compose]

@@ -1,0 +1,85 @@
+// A row of signs 1, 2, 5, 10, 20, 50 and 100 km away, so that distance can be seen. Pure functions; km, global frame.
+//
+// Each stands upright, faces the scene's place, and is as large as it is far: all look the same size from there, 10 degrees above
+// the horizontal and 7.4 degrees apart. A board is 10 hundredths of its distance wide and 6 high.
+#ifndef WELKIN_SIGNS_GLSL
+#define WELKIN_SIGNS_GLSL
+
+#include "11_aerial_perspective/terrain.glsl"
+
+const int kSigns = 7;
+
+float sign_distance_km(int k) {
+  float decade = k < 3 ? 1.0 : (k < 6 ? 10.0 : 100.0);
+  int step = k % 3;
+  return decade * (step == 0 ? 1.0 : (step == 1 ? 2.0 : 5.0));
+}
+
+// Where a ray meets a sign: t_km < 0 if it does not. paint: reflectance.
+struct SignHit {
+  float t_km;
+  float paint;
+  vec3 normal;
+};
+
+// Whether (x, y) is on the stroke of a seven-segment digit; the digit fills 0 ... 1 by 0 ... 2, y up.
+bool on_digit(int digit, float x, float y) {
+  int lit = digit == 0 ? 63 : (digit == 1 ? 6 : (digit == 2 ? 91 : 109));  // a b c d e f g from bit 0; 5: 109
+  float w = 0.22;
+  if (x < 0.0 || x > 1.0 || y < 0.0 || y > 2.0) return false;
+  bool on = (lit & 1) != 0 && y > 2.0 - w;
+  on = on || ((lit & 2) != 0 && x > 1.0 - w && y > 1.0);
+  on = on || ((lit & 4) != 0 && x > 1.0 - w && y < 1.0);
+  on = on || ((lit & 8) != 0 && y < w);
+  on = on || ((lit & 16) != 0 && x < w && y < 1.0);
+  on = on || ((lit & 32) != 0 && x < w && y > 1.0);
+  return on || ((lit & 64) != 0 && abs(y - 1.0) < 0.5 * w);
+}
+
+// The board's paint at (u, v), -1 ... 1 by 0 ... 1: the number of km in black on white, and a black and white band below it.
+float board_paint(int k, float u, float v) {
+  if (abs(u) > 0.96 || v > 0.95 || v < 0.04) return 0.02;
+  if (v < 0.26) return u < 0.0 ? 0.02 : 0.85;
+  int step = k % 3;
+  int first = step == 0 ? 1 : (step == 1 ? 2 : 5);
+  int digits = k / 3 + 1;
+  float size = 0.26;  // of a digit's width and half its height, in half widths of the board
+  float x = (u + 0.5 * (1.45 * float(digits) - 0.45) * size) / size;
+  float y = (v - 0.34) / 0.26;
+  bool ink = on_digit(first, x, y);
+  for (int zero = 1; zero < digits; zero++) ink = ink || on_digit(0, x - 1.45 * float(zero), y);
+  return ink ? 0.02 : 0.85;
+}
+
+// [sign]
+SignHit meet_sign(int k, float ground_radius_km, float azimuth_rad, vec3 start_km, vec3 direction) {
+  SignHit hit;
+  hit.t_km = -1.0;
+  hit.paint = 0.0;
+  float d = sign_distance_km(k);
+  float azimuth = azimuth_rad + (float(k) - 3.0) * 0.13;
+  vec2 place = vec2(sin(azimuth) * d, cos(azimuth) * d);
+  vec3 side = vec3(cos(azimuth), -sin(azimuth), 0.0);
+  vec3 up = up_at(ground_radius_km, place);
+  hit.normal = cross(up, side) * -1.0;  // towards the scene's place
+  vec3 foot = on_planet(ground_radius_km, place, 0.0) - start_km;
+  float facing = dot(direction, hit.normal);
+  if (abs(facing) < 1.0e-6) return hit;
+  float t = dot(foot, hit.normal) / facing;
+  vec3 at = direction * t - foot;
+  float u = dot(at, side) / d;
+  float v = dot(at, up) / d - 0.5 * d / ground_radius_km;  // the ground there is that much lower
+  if (t <= 0.0) return hit;
+  if (abs(u) < 0.05 && v > 0.15 && v < 0.21) {
+    hit.t_km = t;
+    hit.paint = board_paint(k, u / 0.05, (v - 0.15) / 0.06);
+  }
+  if (abs(u) < 0.0015 && v <= 0.15 && dot(at, up) > 0.0) {
+    hit.t_km = t;
+    hit.paint = 0.3;
+  }
+  return hit;
+}
+// [/sign]
+
+#endif

@@ -1,0 +1,100 @@
+// Functions of chapter 11 over arrays. Reads 40 floats an item: the seven vec4 of Atmosphere, then a, b, c; c.w says which
+// function. Writes 6 floats.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 64) in;
+layout(constant_id = 0) const bool HAS_RAYLEIGH = true;
+layout(constant_id = 1) const bool HAS_MIE = true;
+layout(constant_id = 2) const bool HAS_OZONE = true;
+layout(constant_id = 3) const int MIE_PHASE = 0;
+layout(constant_id = 4) const int MS_METHOD = 2;
+layout(constant_id = 5) const int MS_MAP = 1;
+layout(constant_id = 6) const int MS_SIZE = 32;
+layout(constant_id = 7) const bool HIGHER_ORDERS = false;
+
+// A table that never was, smooth and not too far from a true one: what is tested is the march, not the table.
+vec3 read_multiple_scattering_table(vec2 uv) {
+  const int layer = MS_METHOD == 0 ? 0 : int(uv.y * 7.0);
+  if (layer == 0) return vec3(-6.0, -5.5, -5.0) + 3.0 * (uv.x - 0.5);
+  return layer == 3 ? vec3(0.35) : (layer == 6 ? vec3(0.9) : vec3(0.05));
+}
+float seen_sun = 1.0;
+float sun_behind_terrain(float t_km, float altitude_km) { return seen_sun; }
+#include "11_aerial_perspective/aerial.glsl"
+#include "11_aerial_perspective/ground.glsl"
+#include "11_aerial_perspective/signs.glsl"
+
+layout(binding = 0, std430) readonly buffer Inputs {
+  vec4 inputs[];
+};
+layout(binding = 1, std430) writeonly buffer Outputs {
+  float outputs[];
+};
+layout(push_constant) uniform Push {
+  uint count;
+};
+
+RayLight run(Atmosphere air, vec4 a, vec4 b, vec4 c) {
+  const int kind = int(c.w);
+  const MethodAir method = method_air(air, MS_METHOD);
+  const AirRay ray = enter_air(air, a.w, a.xyz, b.xyz);
+  const ScatteringTowardsEye scattering = scattering_along(air, a.xyz, b.xyz);
+  RayLight light = no_air();
+  if (kind == 0) return march_to(method, ray, scattering, c.x, int(c.y), int(c.z), b.w);  // d, slices, samples, power
+  if (kind == 1) {  // c.x of a first slice c.y long; c.z: taken as linear instead, as a sampler would
+    const RayLight whole = behind(method, ray, scattering, no_air(), 0.0, c.y, 2);
+    if (c.z == 0.0) return within_first_slice(whole, c.x);
+    light.radiance = whole.radiance;  // what the nearest texel holds
+    light.transmittance = whole.transmittance;
+    return light;
+  }
+  if (kind == 2) {
+    light = all_orders_light(air, a.w, a.xyz, b.xyz, 64, 64, true);
+    if (MS_METHOD == 2) light.transmittance = ray_transmittance(method.air, source_ray(method.air, ray));
+    return light;
+  }
+  if (kind == 3) {  // to the end of the ray, in shadow by b.w
+    seen_sun = b.w;
+    return march_to(method, ray, scattering, ray.length_km, int(c.y), int(c.z), 2.0);
+  }
+  if (kind == 4) {  // place a.xy, altitude a.z: the point, and back
+    light.radiance = on_planet(air.shape.x, a.xy, a.z);
+    light.transmittance = vec3(place_below(air.shape.x, light.radiance), altitude_of(air.shape.x, light.radiance));
+    return light;
+  }
+  if (kind == 5) {
+    light.radiance = vec3(ring_vertex(a.x, a.y, a.z, b.xy, b.z, c.xy), 0.0);
+    return light;
+  }
+  if (kind == 6) {
+    light.radiance = vec3(disc_above(a.x), distance_from_depth(a.y, a.z, a.w), shadow_altitude(air.shape.x, b.x, b.y, b.z));
+    light.transmittance.x = slices_before(slice_end(c.x, c.y, 128.0, c.z), c.y, 128.0, c.z);
+    return light;
+  }
+  if (kind == 7) {
+    light.radiance = surface_light(vec3(1.0), vec3(0.5), a.xyz, vec3(0.0, 0.0, 1.0), b.xyz, vec3(a.w), vec3(b.w));
+    return light;
+  }
+  if (kind == 8) {
+    const Ground ground = ground_at(a.xy, b, vec3(0.3), c.xy, normalize(vec3(c.xy, 6360.0)), c.z);
+    light.radiance = ground.albedo;
+    light.transmittance = ground.normal;
+    return light;
+  }
+  const SignHit hit = meet_sign(int(c.x), air.shape.x, c.y, a.xyz, b.xyz);
+  light.radiance = vec3(hit.t_km, hit.paint, 0.0);
+  light.transmittance = hit.normal;
+  return light;
+}
+
+void main() {
+  const uint item = gl_GlobalInvocationID.x;
+  if (item >= count) return;
+  const uint first = 10 * item;
+  const Atmosphere air = Atmosphere(inputs[first], inputs[first + 1], inputs[first + 2], inputs[first + 3], inputs[first + 4], inputs[first + 5], inputs[first + 6]);
+  const RayLight light = run(air, inputs[first + 7], inputs[first + 8], inputs[first + 9]);
+  for (int i = 0; i < 3; ++i) {
+    outputs[6 * item + i] = light.radiance[i];
+    outputs[6 * item + 3 + i] = light.transmittance[i];
+  }
+}
