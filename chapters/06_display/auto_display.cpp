@@ -90,6 +90,13 @@ void AutoDisplay::rebuild() {
   bind();
 }
 
+std::string AutoDisplay::explain() const {
+  const std::string& mode = context_.settings.choice("exposure.mode");
+  const char* who = mode != "scene" ? "exposure.mode" : "the scene's [post]";
+  return meter_ ? fmt::format("light meter            on   {} asks for it: passes histogram and exposure\n", who)
+                : fmt::format("light meter            off  {} sets the exposure by hand: no pass, no buffer\n", who);
+}
+
 void AutoDisplay::set_images(const gpu::Image& picture, const gpu::Image& displayed) {
   picture_ = &picture;
   displayed_ = &displayed;

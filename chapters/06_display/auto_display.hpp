@@ -37,6 +37,7 @@ class AutoDisplay : public app::DisplaySystem {
   void set_images(const gpu::Image& picture, const gpu::Image& displayed) override;
   void draw(const app::Frame& frame) override;
   void rebuild() override;
+  std::string explain() const override;
 
   // For tests and tables; none when the exposure is set by hand. Last written by compute.
   const gpu::Buffer* histogram() const { return meter_ ? &meter_->histogram : nullptr; }

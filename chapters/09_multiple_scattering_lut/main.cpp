@@ -2,6 +2,7 @@
 // changes, and gathered along every ray.
 #include "chapters/02_window/window.hpp"
 #include "chapters/06_display/auto_display.hpp"
+#include "chapters/07_ground_truth/ground_truth.hpp"
 #include "chapters/09_multiple_scattering_lut/all_orders_sky.hpp"
 
 using namespace welkin;
@@ -29,6 +30,7 @@ int main(int argc, char** argv) {
       .knobs = knobs(),
       .reference = {{"view.steps", "128"}, {"multiple_scattering.view_steps", "128"}, {"multiple_scattering.size", "64"}, {"multiple_scattering.directions", "256"},
                     {"multiple_scattering.iterations", "32"}, {"multiple_scattering.steps", "32"}},
+      .truth = app::Truth{path_knobs(), {{"samples", "64"}}, [](const app::Context& context) { return std::make_unique<GroundTruth>(context); }, 32},
       .standard_views = {{"noon", "horizon"}, {"sunset", "sun"}, {"twilight", "glow"}, {"orbit", "limb"}, {"alien", "horizon"}},
       .window = open_window_system,
       .make = [](const app::Context& context) { return std::make_unique<AllOrdersSky>(context); },

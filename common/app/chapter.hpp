@@ -81,6 +81,7 @@ struct DisplaySystem {
   // Records its timed passes. The picture may be read, and `displayed` written, by compute without a barrier.
   virtual void draw(const Frame& frame) = 0;
   virtual void rebuild() = 0;  // as Program::rebuild
+  virtual std::string explain() const { return {}; }  // as Program::explain
 };
 
 // An unbiased method of a lower chapter that a method is measured against, with knobs of its own.

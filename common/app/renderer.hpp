@@ -38,6 +38,7 @@ class Renderer {
   Image8 displayed();
   VkExtent2D size() const { return targets_.picture.size; }
   const gpu::Image& target() const { return targets_.picture; }
+  std::string explain_display() const { return display_->explain(); }
   void rebuild() {
     program_.rebuild();
     display_->rebuild();

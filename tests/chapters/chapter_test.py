@@ -99,6 +99,13 @@ class Cost(WelkinCase):
         self.assertGreaterEqual(bytes_held, pictures)
         self.assertLessEqual(bytes_held, pictures + extra)
 
+    def test_a_manual_exposure_leaves_no_meter(self):
+        if NUMBER != "06":
+            self.skipTest("the meter is chapter 06's; its later users bring nothing of their own")
+        text = self.explain("--set", "exposure.mode=manual")
+        self.assertIn("light meter            off", text)
+        self.assertNotIn("histogram", text)
+
     def test_passes(self):
         text = self.explain().split("passes:\n")[1].split("memory:\n")[0]
         names = [line.rsplit(None, 2)[0].strip() for line in text.splitlines() if line.endswith(" ms")]

@@ -1,5 +1,6 @@
 """A real window under Xvfb with real keys, mouse and resizes: what it shows is what a headless run writes."""
 import os
+import re
 import shutil
 import subprocess
 import time
@@ -150,6 +151,18 @@ class Window(WelkinCase):
         self.assertEqual(self.program.wait(timeout=60), 0, self.error_text())
         times = {line.split()[0]: float(line.split()[1]) for line in self.program.stdout if line.rstrip().endswith(" ms")}
         self.assertGreater(times["march"], 3 * times["display"])
+
+    def test_the_truth_of_a_view_at_a_key(self):
+        self.open("10_sky_view_lut", "--size", "64x36", "--scene", "noon", "--validation", "sync")
+        self.key("t")
+        line = self.program.stdout.readline()
+        found = re.match(r"relative RMSE ([\d.]+) % against 32 frames of path tracing at 48x27; two of those differ by ([\d.]+) %", line)
+        self.assertTrue(found, line)
+        error, noise = map(float, found.groups())
+        # The method's own error is far below the noise of so few paths; two noisy pictures differ by the root of two more.
+        self.assertLess(error, noise)
+        self.assertLess(noise, 10.0)
+        self.quit()
 
     def test_lost_display_is_said(self):
         self.open("02_window", "--size", "320x200")
