@@ -148,6 +148,7 @@ void AerialSky::set_target(const gpu::Image& target) {
 // [/compose]
 
 void AerialSky::draw(const app::Frame& frame) {
+  if (context_.settings.choice("tables") == "all") frames_->graph.redo();
   if (!frames_->relief) return frames_->graph.execute(frame);
   const Lifted from = lifted(frame, frames_->relief->map(), context_.scene.planet.ground_radius_km);
   frames_->graph.execute({frame.commands, frame.target, from.camera, frame.timer, frame.index, frame.seed, frame.seconds, from.position_km});
