@@ -84,6 +84,11 @@ void Settings::set_number(std::string_view name, double value) {
   explicit_[i] = true;
 }
 
+std::vector<Knob> joined(std::vector<Knob> first, const std::vector<Knob>& more) {
+  first.insert(first.end(), more.begin(), more.end());
+  return first;
+}
+
 std::string Settings::text(std::string_view name) const {
   const size_t i = index(name);
   if (!knobs_[i].choices.empty()) return choice(name);

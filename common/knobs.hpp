@@ -24,6 +24,9 @@ struct Knob {
   bool rebuilds = false;             // true: a change makes new pipelines (it is compiled into the shader)
 };
 
+// One list after the other: a chapter's own knobs and those of the chapters it uses.
+std::vector<Knob> joined(std::vector<Knob> first, const std::vector<Knob>& more);
+
 // The values of a chapter's knobs, by name. Only declared names exist.
 class Settings {
  public:

@@ -33,7 +33,7 @@ struct ProbePush {
 std::vector<Knob> march_knobs() {
   return {{.name = "view.steps", .unit = "steps", .meaning = "samples along the view ray", .minimum = 1, .maximum = 512, .initial = 32, .integer = true, .ladder = {8, 16, 32, 64, 128}},
           {.name = "light.steps", .unit = "steps", .meaning = "samples along each path to the sun (the adapted rule has a closed form instead)", .minimum = 1, .maximum = 120, .initial = 8, .integer = true, .ladder = {4, 8, 16}, .rebuilds = true},
-          {.name = "rule", .meaning = "where the samples sit and what they weigh", .initial = 5, .choices = {"left", "midpoint", "offset_0.3", "nonuniform", "gauss_legendre", "adapted"}, .ladder = {0, 1, 2, 3, 4, 5}, .rebuilds = true}};
+          {.name = "rule", .meaning = "where the samples sit and what they weigh", .initial = kRuleAdapted, .choices = {"left", "midpoint", "offset_0.3", "nonuniform", "gauss_legendre", "adapted"}, .ladder = {0, 1, 2, 3, 4, 5}, .rebuilds = true}};
 }
 // [/knobs]
 

@@ -8,6 +8,8 @@
 
 namespace welkin {
 
+inline constexpr uint32_t kRuleAdapted = 5;  // of the choices of the knob `rule`: the one later chapters march by
+
 // The chapter's knobs: view.steps, light.steps, rule.
 std::vector<Knob> march_knobs();
 

@@ -6,16 +6,6 @@
 
 using namespace welkin;
 
-namespace {
-
-std::vector<Knob> knobs() {
-  std::vector<Knob> all = march_knobs();
-  for (Knob& knob : display_knobs()) all.push_back(std::move(knob));
-  return all;
-}
-
-}  // namespace
-
 int main(int argc, char** argv) {
   // [chapter]
   const app::Chapter chapter{
@@ -25,7 +15,7 @@ int main(int argc, char** argv) {
       .whats_new = "A light meter that adapts, seven tone curves side by side, and no bands at dusk.",
       .try_next = "./welkin run 06 --scene sunset --set display.curve=compare",
       .sky = true,
-      .knobs = knobs(),
+      .knobs = joined(march_knobs(), display_knobs()),
       .reference = {{"view.steps", "512"}, {"light.steps", "64"}, {"rule", "adapted"}},
       .standard_views = {{"noon", "horizon"}, {"sunset", "sun"}, {"twilight", "glow"}, {"orbit", "limb"}, {"alien", "horizon"}},
       .window = open_window_system,

@@ -52,6 +52,10 @@ Batches batches_of(int samples, int tracking) {
 }
 // [/batches]
 
+app::Truth path_truth() {
+  return {path_knobs(), {{"samples", "64"}}, [](const app::Context& context) { return std::make_unique<GroundTruth>(context); }, 32};
+}
+
 GroundTruth::GroundTruth(const app::Context& context)
     : context_(context),
       air_(gpu::create_buffer(context.device, "atmosphere", sizeof(interop::Atmosphere),

@@ -1,5 +1,5 @@
 // Chapter 07's program: a path tracer for pictures that accumulate and for single rays. Later chapters measure themselves
-// against it: app::Truth{path_knobs(), …, make GroundTruth}.
+// against it: path_truth().
 #pragma once
 
 #include <array>
@@ -12,6 +12,9 @@ namespace welkin {
 
 // The chapter's knobs: samples, orders, tracking, spectral, target.standard_error, probe.samples.
 std::vector<Knob> path_knobs();
+
+// What a later chapter says it is measured against: 2048 paths a pixel.
+app::Truth path_truth();
 
 // Batches a number of samples is cut into, so that no invocation's loops come near what a software driver allows, and the
 // samples of each.

@@ -6,16 +6,6 @@
 
 using namespace welkin;
 
-namespace {
-
-std::vector<Knob> knobs() {
-  std::vector<Knob> all = path_knobs();
-  for (Knob& knob : display_knobs()) all.push_back(std::move(knob));
-  return all;
-}
-
-}  // namespace
-
 int main(int argc, char** argv) {
   // [chapter]
   const app::Chapter chapter{
@@ -26,7 +16,7 @@ int main(int argc, char** argv) {
       .try_next = "./welkin run 07 --scene sunset --frames 64   (or: --set orders=1, and watch the sky grow dark)",
       .sky = true,
       .stochastic = true,
-      .knobs = knobs(),
+      .knobs = joined(path_knobs(), display_knobs()),
       .reference = {{"samples", "4096"}, {"orders", "0"}, {"tracking", "closed_form"}, {"spectral", "hero"}},
       .standard_views = {{"noon", "horizon"}, {"sunset", "sun"}, {"twilight", "glow"}, {"orbit", "limb"}, {"alien", "horizon"}},
       .window = open_window_system,

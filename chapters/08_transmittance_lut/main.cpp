@@ -6,16 +6,6 @@
 
 using namespace welkin;
 
-namespace {
-
-std::vector<Knob> knobs() {
-  std::vector<Knob> all = table_sky_knobs();
-  for (Knob& knob : display_knobs()) all.push_back(std::move(knob));
-  return all;
-}
-
-}  // namespace
-
 int main(int argc, char** argv) {
   // [chapter]
   const app::Chapter chapter{
@@ -26,7 +16,7 @@ int main(int argc, char** argv) {
       .try_next = "./welkin run 08 --headless --explain   (or: ./welkin compare 05 08)",
       .sky = true,
       .images = {"transmittance"},
-      .knobs = knobs(),
+      .knobs = joined(table_sky_knobs(), display_knobs()),
       .reference = {{"view.steps", "512"}, {"rule", "adapted"}, {"transmittance.width", "1024"}, {"transmittance.height", "1024"}},
       .standard_views = {{"noon", "horizon"}, {"sunset", "sun"}, {"twilight", "glow"}, {"orbit", "limb"}, {"alien", "horizon"}},
       .window = open_window_system,

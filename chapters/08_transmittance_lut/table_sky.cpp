@@ -29,8 +29,7 @@ std::vector<Knob> table_sky_knobs() {
   std::vector<Knob> knobs;
   for (Knob& knob : march_knobs())
     if (knob.name != "light.steps") knobs.push_back(std::move(knob));
-  for (Knob& knob : transmittance_knobs()) knobs.push_back(std::move(knob));
-  return knobs;
+  return joined(std::move(knobs), transmittance_knobs());
 }
 
 // [passes]

@@ -13,7 +13,6 @@ constexpr VkDescriptorType kImage = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
 constexpr VkDescriptorType kTable = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
 constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 constexpr VkDescriptorType kUniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
-constexpr uint32_t kRuleAdapted = 5;
 
 struct ImagePush {
   CameraRays camera;
@@ -31,8 +30,7 @@ std::vector<Knob> all_orders_knobs() {
   std::vector<Knob> knobs;
   for (Knob& knob : march_knobs())
     if (knob.name == "view.steps") knobs.push_back(std::move(knob));
-  for (Knob& knob : multiple_scattering_knobs()) knobs.push_back(std::move(knob));
-  return knobs;
+  return joined(std::move(knobs), multiple_scattering_knobs());
 }
 
 // [frames]

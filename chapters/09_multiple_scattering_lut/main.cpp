@@ -7,16 +7,6 @@
 
 using namespace welkin;
 
-namespace {
-
-std::vector<Knob> knobs() {
-  std::vector<Knob> all = all_orders_knobs();
-  for (Knob& knob : display_knobs()) all.push_back(std::move(knob));
-  return all;
-}
-
-}  // namespace
-
 int main(int argc, char** argv) {
   // [chapter]
   const app::Chapter chapter{
@@ -27,10 +17,10 @@ int main(int argc, char** argv) {
       .try_next = "./welkin compare 05 09 --scene twilight   (or: ./welkin run 09 --set orders=1)",
       .sky = true,
       .images = {"multiple_scattering"},
-      .knobs = knobs(),
+      .knobs = joined(all_orders_knobs(), display_knobs()),
       .reference = {{"view.steps", "128"}, {"multiple_scattering.view_steps", "128"}, {"multiple_scattering.size", "64"}, {"multiple_scattering.directions", "256"},
                     {"multiple_scattering.iterations", "32"}, {"multiple_scattering.steps", "32"}},
-      .truth = app::Truth{path_knobs(), {{"samples", "64"}}, [](const app::Context& context) { return std::make_unique<GroundTruth>(context); }, 32},
+      .truth = path_truth(),
       .standard_views = {{"noon", "horizon"}, {"sunset", "sun"}, {"twilight", "glow"}, {"orbit", "limb"}, {"alien", "horizon"}},
       .window = open_window_system,
       .make = [](const app::Context& context) { return std::make_unique<AllOrdersSky>(context); },

@@ -7,16 +7,6 @@
 
 using namespace welkin;
 
-namespace {
-
-std::vector<Knob> knobs() {
-  std::vector<Knob> all = sky_knobs();
-  for (Knob& knob : display_knobs()) all.push_back(std::move(knob));
-  return all;
-}
-
-}  // namespace
-
 int main(int argc, char** argv) {
   // [chapter]
   const app::Chapter chapter{
@@ -27,9 +17,9 @@ int main(int argc, char** argv) {
       .try_next = "./welkin compare 05 10 --scene sunset   (or: ./welkin run 10 --headless --explain)",
       .sky = true,
       .images = {"sky_view", "transmittance", "multiple_scattering"},
-      .knobs = knobs(),
+      .knobs = joined(sky_knobs(), display_knobs()),
       .reference = {{"sky_view.method", "march"}, {"view.steps", "128"}, {"multiple_scattering.view_steps", "64"}},
-      .truth = app::Truth{path_knobs(), {{"samples", "64"}}, [](const app::Context& context) { return std::make_unique<GroundTruth>(context); }, 32},
+      .truth = path_truth(),
       .standard_views = {{"noon", "horizon"}, {"sunset", "sun"}, {"twilight", "glow"}, {"orbit", "limb"}, {"alien", "horizon"}},
       .window = open_window_system,
       .make = [](const app::Context& context) { return std::make_unique<SkyProgram>(context); },

@@ -14,7 +14,6 @@ constexpr VkDescriptorType kImage = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
 constexpr VkDescriptorType kTable = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
 constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 constexpr VkDescriptorType kUniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
-constexpr uint32_t kRuleAdapted = 5;
 
 struct LookPush {
   CameraRays camera;
@@ -32,10 +31,9 @@ struct ProbePush {
 }  // namespace
 
 std::vector<Knob> sky_knobs() {
-  std::vector<Knob> knobs = all_orders_knobs();
-  for (Knob& knob : transmittance_knobs()) knobs.push_back(std::move(knob));
+  std::vector<Knob> knobs = joined(all_orders_knobs(), transmittance_knobs());
   for (Knob& knob : knobs) knob.ladder.clear();  // climbed in their own chapters
-  for (Knob& knob : sky_view_knobs()) knobs.push_back(std::move(knob));
+  knobs = joined(std::move(knobs), sky_view_knobs());
   knobs.push_back({.name = "tables", .meaning = "what a frame computes: only what something changed for, or everything (to see what it costs)", .choices = {"changed", "all"}});
   return knobs;
 }
@@ -136,12 +134,14 @@ std::string SkyProgram::explain() const {
          (all_orders_ ? "" : "  multiple scattering  off: orders is 1\n");
 }
 
-const gpu::Image* SkyProgram::image(const std::string& name) const {
-  if (name == "sky_view") return &sky_->sky_view().image();
-  if (name == "transmittance" && sky_->transmittance() != nullptr) return &sky_->transmittance()->image();
-  if (name == "multiple_scattering" && sky_->scattering() != nullptr) return &sky_->scattering()->image();
+const gpu::Image* SkyPass::image(const std::string& name) const {
+  if (name == "sky_view") return &sky_view_.image();
+  if (name == "transmittance" && transmittance_) return &transmittance_->image();
+  if (name == "multiple_scattering" && scattering_) return &scattering_->image();
   return nullptr;
 }
+
+const gpu::Image* SkyProgram::image(const std::string& name) const { return sky_->image(name); }
 
 // [probe]
 // The table belongs to one altitude and one height of the sun: rays that share both are looked up together. The rest are

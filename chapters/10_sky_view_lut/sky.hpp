@@ -22,6 +22,7 @@ class SkyPass {
   // The picture, an rgba32f storage image; before the first frame, and whenever it is another.
   void set_target(const gpu::Image& target, gpu::Use outside = {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT});
   graph::Resource resource() const { return *picture_; }
+  const gpu::Image* image(const std::string& name) const;  // its tables, as Program::image
 
   const AirBlock& air() const { return air_; }
   const TransmittanceLut* transmittance() const { return transmittance_.get(); }

@@ -171,12 +171,6 @@ std::string AerialSky::explain() const {
   return text;
 }
 
-const gpu::Image* AerialSky::image(const std::string& name) const {
-  const SkyPass& sky = frames_->sky;
-  if (name == "sky_view") return &sky.sky_view().image();
-  if (name == "multiple_scattering" && sky.scattering() != nullptr) return &sky.scattering()->image();
-  if (name == "transmittance" && sky.transmittance() != nullptr) return &sky.transmittance()->image();
-  return nullptr;
-}
+const gpu::Image* AerialSky::image(const std::string& name) const { return frames_->sky.image(name); }
 
 }  // namespace welkin

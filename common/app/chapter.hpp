@@ -113,7 +113,7 @@ struct Chapter {
   std::vector<std::string> images;  // names Program::image knows
   std::vector<Knob> knobs;
   std::vector<std::pair<std::string, std::string>> reference;  // knob values the sweep's reference is drawn with
-  std::optional<Truth> truth;  // what a window measures its view against, and the sweep's reference if there is no other
+  std::optional<Truth> truth;  // what a window measures its view against
   std::string default_scene = "noon";
   std::vector<StandardView> standard_views;
   std::function<std::unique_ptr<WindowSystem>()> window;  // none: the chapter draws into files only

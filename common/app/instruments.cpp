@@ -104,24 +104,20 @@ std::vector<std::vector<double>> ordered_by_pipeline(std::vector<std::vector<dou
   return ladder;
 }
 
-// What the errors of a sweep are errors against: this program at its best, or the truth of a lower chapter.
+// What the errors of a sweep are errors against: this program at its best.
 Image draw_reference(OtherScene& other, Program& program, VkExtent2D size) {
   const Session& session = other.session;
   const CameraPose pose = session.first_pose();
-  if (!session.chapter.truth || !session.chapter.reference.empty()) {
-    for (const auto& [name, text] : session.chapter.reference) other.settings.set(name, text);
-    program.rebuild();
-    Renderer renderer(session.context, session.chapter, program, size);
-    renderer.draw(pose, session.options.time_s, session.options.seed, 0);
-    return renderer.picture();
-  }
-  return draw_truth(session, pose, size, session.options.seed, session.options.frames);
+  for (const auto& [name, text] : session.chapter.reference) other.settings.set(name, text);
+  program.rebuild();
+  Renderer renderer(session.context, session.chapter, program, size);
+  renderer.draw(pose, session.options.time_s, session.options.seed, 0);
+  return renderer.picture();
 }
 
-std::string describe_reference(const Chapter& chapter, uint32_t frames) {
-  const bool traced = chapter.truth && chapter.reference.empty();
-  std::string text = traced ? fmt::format("path tracer, {} frames", frames > 0 ? frames : chapter.truth->frames) : "";
-  for (const auto& [name, value] : traced ? chapter.truth->settings : chapter.reference) text += (text.empty() ? "" : " ") + name + "=" + value;
+std::string describe_reference(const Chapter& chapter) {
+  std::string text;
+  for (const auto& [name, value] : chapter.reference) text += (text.empty() ? "" : " ") + name + "=" + value;
   return text;
 }
 
@@ -131,7 +127,7 @@ void must_have_standard_views(const Session& session) {
 
 }  // namespace
 
-Image draw_truth(const Session& session, const CameraPose& pose, VkExtent2D size, uint32_t seed, uint32_t frames) {
+Image draw_truth(const Session& session, const CameraPose& pose, VkExtent2D size, uint32_t seed) {
   const Truth& truth = *session.chapter.truth;
   Settings settings(truth.knobs);
   for (const auto& [name, text] : truth.settings) settings.set(name, text);
@@ -139,7 +135,7 @@ Image draw_truth(const Session& session, const CameraPose& pose, VkExtent2D size
   const std::unique_ptr<Program> tracer = truth.make(context);
   const Chapter plain;
   Renderer renderer(context, plain, *tracer, size);
-  for (uint32_t i = 0; i < (frames > 0 ? frames : truth.frames); ++i) renderer.draw(pose, session.options.time_s, seed, i);
+  for (uint32_t i = 0; i < truth.frames; ++i) renderer.draw(pose, session.options.time_s, seed, i);
   return renderer.picture();
 }
 
@@ -203,7 +199,7 @@ Exit run_sweep(const Session& session) {
   }
   measure::write_sweep_csv(session.options.sweep, session.chapter.knobs, rows,
                            {session.chapter.name, "standard views", device.name, device.driver, device.software, size.width,
-                            size.height, describe_reference(session.chapter, session.options.frames), now_utc()});
+                            size.height, describe_reference(session.chapter), now_utc()});
   fmt::print("{} settings x {} views -> {}\n", rungs, session.chapter.standard_views.size(), session.options.sweep);
   return Exit::ok;
 }

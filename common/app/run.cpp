@@ -73,8 +73,7 @@ void load_scene_and_settings(const Chapter& chapter, const std::string& scene_na
                              const std::vector<std::pair<std::string, std::string>>& set, Scene& scene, Settings& settings) {
   scene = load_scene(scene_name, scenes_directory());
   std::vector<Knob> knobs = chapter.knobs;
-  if (chapter.sky)
-    for (Knob& knob : scene_knobs(scene)) knobs.push_back(std::move(knob));
+  if (chapter.sky) knobs = joined(std::move(knobs), scene_knobs(scene));
   settings = Settings(std::move(knobs));
   // A picture of another chapter may carry knobs this one lacks: the scene's are hints, the command line's are orders.
   for (const auto& [name, text] : scene.settings)

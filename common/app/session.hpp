@@ -36,8 +36,7 @@ std::string restoring_text(const Session& session, const CameraPose& pose);
 void write_output(const Session& session, const std::string& file, const CameraPose& pose, const Image& picture, const Image8& displayed);
 
 // A view as the chapter's truth shows it; the chapter has one. Without its display pass, whatever that is.
-// frames: how many it accumulates over, 0 for as many as it says itself.
-Image draw_truth(const Session& session, const CameraPose& pose, VkExtent2D size, uint32_t seed, uint32_t frames = 0);
+Image draw_truth(const Session& session, const CameraPose& pose, VkExtent2D size, uint32_t seed);
 
 // Modes; each returns the program's exit code (before validation messages are looked at).
 Exit run_picture(const Session& session);  // headless

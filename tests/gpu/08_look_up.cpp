@@ -2,12 +2,10 @@
 #include "tests/gpu/08_look_up.hpp"
 
 #include <cmath>
-#include <fstream>
-#include <sstream>
-#include <stdexcept>
 
 #include "chapters/08_transmittance_lut/transmittance_lut.hpp"
 #include "common/app/session.hpp"
+#include "common/image/csv.hpp"
 #include "common/scene/scene_knobs.hpp"
 #include "tests/gpu/harness.hpp"
 
@@ -57,19 +55,12 @@ std::vector<LookedUp> look_up(const std::string& scene_name, const Choices& choi
 }
 
 std::vector<TruePath> path_rows(const std::string& file) {
-  std::ifstream stream(std::string(WELKIN_TEST_DATA) + "/" + file);
-  if (!stream) throw std::runtime_error("cannot read tests/data/" + file);
+  const CsvTable table = read_csv(std::string(WELKIN_TEST_DATA "/") + file, {"h_km", "view_zenith_deg", "lowest_altitude_km", "tau_r", "tau_g", "tau_b", "T_r", "T_g", "T_b"});
   std::vector<TruePath> rows;
-  bool header = true;
-  for (std::string line; std::getline(stream, line);) {
-    if (line.empty() || line[0] == '#') continue;
-    if (std::exchange(header, false)) continue;
-    std::vector<double> v;
-    std::stringstream fields(line);
-    for (std::string field; std::getline(fields, field, ',');) v.push_back(std::stod(field));
-    if (v.size() != 13) throw std::runtime_error(file + ": a row without 13 fields");
-    const Path path{float(v[0]), float(reference::direction_from_degrees(v[1], 0.0)[2])};
-    rows.push_back({path, v[2], {v[7], v[8], v[9]}, {v[10], v[11], v[12]}});
+  for (size_t i = 0; i < table.rows; ++i) {
+    const auto at = [&](const char* name) { return table.column(name)[i]; };
+    const Path path{float(at("h_km")), float(reference::direction_from_degrees(at("view_zenith_deg"), 0.0)[2])};
+    rows.push_back({path, at("lowest_altitude_km"), {at("tau_r"), at("tau_g"), at("tau_b")}, {at("T_r"), at("T_g"), at("T_b")}});
   }
   return rows;
 }

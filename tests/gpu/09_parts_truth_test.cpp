@@ -1,11 +1,12 @@
 // The parts of chapter 09 against closed forms and against tests/data/multiple_scattering_transfer_earth.csv: sets of
 // directions, texel maps, moments, the published second order, transfer and Psi.
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
+#include "common/image/csv.hpp"
 #include "tests/gpu/09_sky.hpp"
 #include "tests/gpu/harness.hpp"
 
@@ -23,17 +24,16 @@ struct TransferRow {
 
 const std::vector<TransferRow>& transfer_rows() {
   static const std::vector<TransferRow> loaded = [] {
-    std::ifstream stream(std::string(WELKIN_TEST_DATA) + "/multiple_scattering_transfer_earth.csv");
+    const CsvTable table = read_csv(WELKIN_TEST_DATA "/multiple_scattering_transfer_earth.csv", {"h_km", "sun_zenith_deg"});
     std::vector<TransferRow> rows;
-    bool header = true;
-    for (std::string line; std::getline(stream, line);) {
-      if (line.empty() || line[0] == '#') continue;
-      if (std::exchange(header, false)) continue;
-      std::vector<double> v;
-      std::stringstream fields(line);
-      for (std::string field; std::getline(fields, field, ',');) v.push_back(std::stod(field));
-      TransferRow row{v.at(0), v.at(1)};
-      for (size_t i = 0; i < 9; ++i) row.converged[i] = v.at(3 + i), row.sixty_four[i] = v.at(12 + i);
+    for (size_t r = 0; r < table.rows; ++r) {
+      TransferRow row{table.column("h_km")[r], table.column("sun_zenith_deg")[r]};
+      size_t i = 0;
+      for (const char* what : {"L2nd", "fms", "Psi"})
+        for (const char* channel : {"r", "g", "b"}) {
+          row.converged[i] = table.column(fmt::format("{}_conv_{}", what, channel))[r];
+          row.sixty_four[i++] = table.column(fmt::format("{}_dir64_{}", what, channel))[r];
+        }
       rows.push_back(row);
     }
     return rows;

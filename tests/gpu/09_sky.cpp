@@ -4,12 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <sstream>
-#include <stdexcept>
 
 #include "chapters/09_multiple_scattering_lut/all_orders_sky.hpp"
 #include "common/app/session.hpp"
+#include "common/image/csv.hpp"
 #include "tests/gpu/harness.hpp"
 
 namespace welkin::test {
@@ -35,21 +33,15 @@ std::vector<std::array<float, 12>> evaluate_orders(const std::vector<OrderPart>&
 Scene orders_scene(const std::string& name) { return load_scene(name, app::scenes_directory()); }
 
 std::vector<OrderRow> order_rows(const std::string& file) {
-  std::ifstream stream(std::string(WELKIN_TEST_DATA) + "/" + file);
-  if (!stream) throw std::runtime_error("cannot read tests/data/" + file);
+  const CsvTable table = read_csv(std::string(WELKIN_TEST_DATA "/") + file,
+                                  {"h_km", "view_zenith_deg", "sun_zenith_deg", "rel_azimuth_deg", "ground_albedo", "L1_quad", "L2", "Linf", "Linf_se"}, {"ray_end", "mie_phase", "channel"});
   std::vector<OrderRow> rows;
-  bool header = true;
-  for (std::string line; std::getline(stream, line);) {
-    if (line.empty() || line[0] == '#') continue;
-    if (std::exchange(header, false)) continue;
-    std::vector<std::string> v;
-    std::stringstream fields(line);
-    for (std::string field; std::getline(fields, field, ',');) v.push_back(field);
-    if (v.size() != 20) throw std::runtime_error(file + ": a row without 20 fields");
-    const auto number = [&](size_t i) { return std::stod(v[i]); };
-    const double horizon_deg = 180.0 - std::asin(6360.0 / (6360.0 + number(0))) * 180.0 / 3.14159265358979324;
-    rows.push_back({{number(0), number(1), number(2), number(3)}, v[6] == "r" ? 0 : v[6] == "g" ? 1 : 2, number(7), number(8),
-                    number(11), number(17), number(18), std::abs(number(1) - horizon_deg) <= 0.5});
+  for (size_t i = 0; i < table.rows; ++i) {
+    const auto at = [&](const char* name) { return table.column(name)[i]; };
+    const std::string& channel = table.text("channel")[i];
+    const double horizon_deg = 180.0 - std::asin(6360.0 / (6360.0 + at("h_km"))) * 180.0 / 3.14159265358979324;
+    rows.push_back({{at("h_km"), at("view_zenith_deg"), at("sun_zenith_deg"), at("rel_azimuth_deg")}, channel == "r" ? 0 : channel == "g" ? 1 : 2, at("ground_albedo"), at("L1_quad"),
+                    at("L2"), at("Linf"), at("Linf_se"), std::abs(at("view_zenith_deg") - horizon_deg) <= 0.5});
   }
   return rows;
 }
