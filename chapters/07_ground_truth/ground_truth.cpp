@@ -56,8 +56,9 @@ app::Truth path_truth() {
   return {path_knobs(), {{"samples", "64"}}, [](const app::Context& context) { return std::make_unique<GroundTruth>(context); }, 32};
 }
 
-GroundTruth::GroundTruth(const app::Context& context)
+GroundTruth::GroundTruth(const app::Context& context, bool surfaces)
     : context_(context),
+      surfaces_(surfaces),
       air_(gpu::create_buffer(context.device, "atmosphere", sizeof(interop::Atmosphere),
                               VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Where::device)),
       unfinished_(gpu::create_buffer(context.device, "unfinished paths", sizeof(uint32_t), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::readback)) {
@@ -73,9 +74,15 @@ gpu::Specialization GroundTruth::variant() const {
   return constants;
 }
 
+// [pipelines]
 void GroundTruth::rebuild() {
-  trace_ = gpu::create_compute_pipeline(context_.device, "07_ground_truth/trace.comp", {{0, kUniform}, {1, kStorage}, {2, kStorage}, {3, kStorage}}, sizeof(TracePush), variant());
-  resolve_ = gpu::create_compute_pipeline(context_.device, "07_ground_truth/resolve.comp", {{0, kUniform}, {1, kStorage}, {2, kImage}, {3, kStorage}}, sizeof(ResolvePush), variant());
+  std::vector<gpu::Binding> trace{{0, kUniform}, {1, kStorage}, {2, kStorage}, {3, kStorage}}, resolve{{0, kUniform}, {1, kStorage}, {2, kImage}, {3, kStorage}};
+  if (surfaces_) {
+    trace.insert(trace.end(), {{4, kImage}, {5, kImage}});
+    resolve.push_back({4, kImage});
+  }
+  trace_ = gpu::create_compute_pipeline(context_.device, surfaces_ ? "07_ground_truth/trace_surfaces.comp" : "07_ground_truth/trace.comp", trace, sizeof(TracePush), variant());
+  resolve_ = gpu::create_compute_pipeline(context_.device, surfaces_ ? "07_ground_truth/resolve_surfaces.comp" : "07_ground_truth/resolve.comp", resolve, sizeof(ResolvePush), variant());
   if (trace_sets_[0].handle != VK_NULL_HANDLE) return;
   for (int i = 0; i < 2; ++i) {
     trace_sets_[i] = gpu::create_descriptor_set(context_.device, trace_.set_layout, trace_.bindings);
@@ -84,6 +91,16 @@ void GroundTruth::rebuild() {
     gpu::write_buffer(context_.device, trace_sets_[i], 3, kStorage, unfinished_);
     gpu::write_buffer(context_.device, resolve_sets_[i], 0, kUniform, air_);
   }
+}
+// [/pipelines]
+
+void GroundTruth::set_surfaces(const FirstSurfaces& surfaces) {
+  for (int i = 0; i < 2; ++i) {
+    gpu::write_storage_image(context_.device, trace_sets_[i], 4, *surfaces.normals);
+    gpu::write_storage_image(context_.device, trace_sets_[i], 5, *surfaces.albedos);
+    gpu::write_storage_image(context_.device, resolve_sets_[i], 4, *surfaces.normals);
+  }
+  batches_ = 0;
 }
 
 void GroundTruth::set_target(const gpu::Image& target) {
@@ -186,6 +203,7 @@ std::string GroundTruth::explain() const {
   text += error > 0.0 ? fmt::format("  mean relative standard error {:.3g}{}\n", error, done_ ? ": the target is reached, no more paths" : "")
                       : fmt::format("  standard error not known from fewer than {} batches\n", kBatchesToJudge);
   text += fmt::format("  {} cut by the driver\n", unfinished_.as<uint32_t>()[0]);
+  text += fmt::format("  {}\n", surfaces_ ? "first surfaces: from images" : "first surfaces: none, no image is read");
   return text;
 }
 

@@ -24,9 +24,19 @@ struct Batches {
 };
 Batches batches_of(int samples, int tracking);
 
+// What rays from the eye meet before the smooth planet, pixel by pixel: rgba32f storage images of the picture's size in
+// layout GENERAL, whose writes are visible to compute when draw() is called. They must outlive what is drawn with them.
+struct FirstSurfaces {
+  const gpu::Image* normals = nullptr;  // unit normals in the eye's local frame; w: distance along the ray in km, 0: none
+  const gpu::Image* albedos = nullptr;  // share of light reflected, evenly to all sides, per channel
+};
+
 class GroundTruth : public app::Program {
  public:
-  explicit GroundTruth(const app::Context& context);
+  // With `surfaces`, set_surfaces() is called before the first draw and whenever the images are made anew; what is on them
+  // may change only with the camera, which starts the picture again.
+  explicit GroundTruth(const app::Context& context, bool surfaces = false);
+  void set_surfaces(const FirstSurfaces& surfaces);
   void set_target(const gpu::Image& target) override;
   void draw(const app::Frame& frame) override;
   void rebuild() override;
@@ -46,6 +56,7 @@ class GroundTruth : public app::Program {
   double relative_error() const;  // of the accumulation going on; 0 while it is not known
 
   const app::Context context_;
+  const bool surfaces_;
   gpu::Buffer air_;         // the uniform block of the atmosphere
   gpu::Buffer unfinished_;  // one counter
   std::array<gpu::Buffer, 2> sums_;  // read one, write the other

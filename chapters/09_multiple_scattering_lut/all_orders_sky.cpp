@@ -30,6 +30,7 @@ std::vector<Knob> all_orders_knobs() {
   std::vector<Knob> knobs;
   for (Knob& knob : march_knobs())
     if (knob.name == "view.steps") knobs.push_back(std::move(knob));
+  knobs.push_back({.name = "tables", .meaning = "what a frame computes: only what something changed for, or everything (to see what it costs)", .choices = {"changed", "all"}});
   return joined(std::move(knobs), multiple_scattering_knobs());
 }
 
@@ -117,10 +118,13 @@ void AllOrdersSky::set_target(const gpu::Image& target) {
   frames.graph.compile();
 }
 
-void AllOrdersSky::draw(const app::Frame& frame) { frames_->graph.execute(frame); }
+void AllOrdersSky::draw(const app::Frame& frame) {
+  if (context_.settings.choice("tables") == "all") frames_->graph.redo();
+  frames_->graph.execute(frame);
+}
 
 std::string AllOrdersSky::explain() const {
-  return frames_->graph.explain() + (frames_->table ? "" : "  multiple scattering  off: orders is 1, so there is no table and chapter 05's shader draws\n");
+  return frames_->graph.explain() + (frames_->table ? frames_->table->explain() : "  multiple scattering  off: orders is 1, so there is no table and chapter 05's shader draws\n");
 }
 
 const gpu::Image* AllOrdersSky::image(const std::string& name) const {

@@ -9,7 +9,7 @@
 
 namespace welkin {
 
-// view.steps of chapter 05 and those of the table.
+// view.steps of chapter 05, those of the table, and `tables`.
 std::vector<Knob> all_orders_knobs();
 
 class AllOrdersSky : public app::Program {

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <vector>
 
 #include "chapters/08_transmittance_lut/transmittance_lut.hpp"
@@ -22,6 +23,10 @@ std::vector<Knob> multiple_scattering_knobs();
 // Whether these settings want the table: `orders` is not 1. Without it there is no pass and no image: do not make one.
 bool wants_multiple_scattering(const Settings& settings);
 
+// Orders to gather before the series of this air can be closed: 3 + 2 tau + 0.3 tau^2, tau its scattering optical depth straight up in the
+// channel where it is deepest; 64 at most.
+int orders_of(const interop::Atmosphere& air);
+
 // Pass "multiple scattering": fills the table, when the air has changed.
 class MultipleScatteringLut {
  public:
@@ -31,6 +36,7 @@ class MultipleScatteringLut {
   const gpu::Image& image() const { return table_; }
   VkSampler sampler() const { return sampler_; }
   graph::Resource resource() const { return resource_; }
+  std::string explain() const;  // how many orders it gathers, and why
   // Constants 0 to 6 of a shader that reads the table: the air's variant, method, map, size.
   gpu::Specialization variant() const;
 
@@ -39,7 +45,10 @@ class MultipleScatteringLut {
   static constexpr size_t kFirst = 0;
   size_t place_of(int orders) const { return orders == 1 ? kFirst : 1 + static_cast<size_t>(orders - 2) % 3; }
   bool published() const { return context_.settings.choice("multiple_scattering.method") == "published"; }
-  int orders_gathered() const { return published() ? 1 : context_.settings.integer("multiple_scattering.iterations"); }
+  int orders_gathered() const;
+  int directions() const { return (context_.settings.integer("multiple_scattering.directions") + 15) / 16 * 16; }
+  int steps() const { return (context_.settings.integer("multiple_scattering.steps") + 3) / 4 * 4; }
+  uint32_t rays() const;  // that differ, for a sun anywhere: altitudes times zenith angles
   void make_images();
   void record(const app::Frame& frame) const;
 
@@ -50,8 +59,9 @@ class MultipleScatteringLut {
   gpu::Image table_;
   std::array<gpu::Image, 4> orders_;
   graph::Resource resource_;
-  gpu::ComputePipeline first_, next_, close_;
-  gpu::DescriptorSet first_set_, close_set_;
+  gpu::Buffer nodes_;  // of the rays light is gathered along
+  gpu::ComputePipeline place_, first_, next_, close_;
+  gpu::DescriptorSet place_set_, first_set_, close_set_;
   std::array<gpu::DescriptorSet, 4> next_sets_;  // by the image that is read
 };
 

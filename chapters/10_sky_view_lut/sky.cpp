@@ -33,9 +33,7 @@ struct ProbePush {
 std::vector<Knob> sky_knobs() {
   std::vector<Knob> knobs = joined(all_orders_knobs(), transmittance_knobs());
   for (Knob& knob : knobs) knob.ladder.clear();  // climbed in their own chapters
-  knobs = joined(std::move(knobs), sky_view_knobs());
-  knobs.push_back({.name = "tables", .meaning = "what a frame computes: only what something changed for, or everything (to see what it costs)", .choices = {"changed", "all"}});
-  return knobs;
+  return joined(std::move(knobs), sky_view_knobs());
 }
 
 // [sky_pass]

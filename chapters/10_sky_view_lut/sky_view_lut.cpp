@@ -31,6 +31,7 @@ gpu::Image make_table(const app::Context& context) {
 std::vector<Knob> sky_view_knobs() {
   return {{.name = "sky_view.method", .meaning = "where the sky comes from: the table, the direct march, or whichever is right for the altitude", .initial = 0, .choices = {"auto", "table", "march"}, .ladder = {1, 2}},
           {.name = "sky_view.size", .unit = "texels", .meaning = "azimuths x heights in the table", .initial = 1, .choices = {"96x54", "192x108", "288x162", "384x216", "768x432"}, .ladder = {0, 1, 2, 3}, .rebuilds = true},
+          {.name = "sky_view.steps", .unit = "steps", .meaning = "samples of the first order along a texel's ray, in fours", .minimum = 4, .maximum = 512, .initial = 16, .integer = true, .ladder = {8, 16, 32}},
           {.name = "sky_view.format", .meaning = "bits of a number in the table: 16 or 32", .initial = 1, .choices = {"half", "float"}, .ladder = {0, 1}, .rebuilds = true},
           {.name = "sky_view.highest", .unit = "km", .meaning = "altitude above which `auto` marches", .minimum = 0, .maximum = 1000, .initial = 20}};
 }
@@ -48,7 +49,7 @@ SkyViewLut::SkyViewLut(const app::Context& context, graph::Graph& graph, const A
                filled_ = seen(frame);
                const float sun_sine = std::hypot(frame.camera.sun.x, frame.camera.sun.y);
                const FillPush push{{filled_->altitude_km, filled_->mu_sun, sun_sine, 0.0f}, filled_->view_steps, filled_->table_steps, {}};
-               gpu::dispatch_over(frame.commands, pipeline_, set_, push, image_.size);
+               gpu::dispatch(frame.commands, pipeline_, set_, push, (image_.size.width + 31) / 32, image_.size.height);
              },
              .changed = [this](const app::Frame& frame) { return filled_ != seen(frame); },
              .idle = [this](const app::Frame& frame) { return !serves(frame.camera.right.w); }});
@@ -58,7 +59,7 @@ SkyViewLut::SkyViewLut(const app::Context& context, graph::Graph& graph, const A
 // The sun's azimuth is no part of it: the table is turned towards the sun when it is read.
 SkyViewLut::Seen SkyViewLut::seen(const app::Frame& frame) const {
   const CameraRays& camera = frame.camera;
-  return {camera.right.w, camera.sun.z, context_.settings.integer("view.steps"),
+  return {camera.right.w, camera.sun.z, context_.settings.integer("sky_view.steps"),
           scattering_ != nullptr ? context_.settings.integer("multiple_scattering.view_steps") : 0};
 }
 // [/pass]

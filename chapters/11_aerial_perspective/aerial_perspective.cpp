@@ -11,6 +11,7 @@ namespace {
 constexpr VkDescriptorType kUniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
 constexpr VkDescriptorType kSampled = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
 constexpr VkDescriptorType kImage = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+constexpr uint32_t kWorkgroup = 64;      // as in froxels.comp
 constexpr size_t kFirstConstant = 16;  // of this chapter; those before belong to chapters 04 and 09
 
 }  // namespace
@@ -24,6 +25,7 @@ std::vector<Knob> froxel_knobs() {
           {.name = "froxels.samples", .unit = "samples", .meaning = "in a slice: 1, or pairs of Gauss nodes", .minimum = 1, .maximum = 8, .initial = 2, .integer = true, .rebuilds = true},
           {.name = "froxels.power", .meaning = "the far end of slice s of n lies at (s/n)^power of the distance", .minimum = 1, .maximum = 4, .initial = 2, .rebuilds = true},
           {.name = "froxels.distance_km", .unit = "km", .meaning = "where the last slice ends; the march serves what lies beyond", .minimum = 1, .maximum = 1000, .initial = 128},
+          {.name = "froxels.threads", .unit = "threads", .meaning = "that share a direction, a slice each; auto: 32, but on a processor, where only their sum counts, 1", .initial = 0, .choices = {"auto", "1", "8", "32"}, .rebuilds = true},
           {.name = "froxels.transmittance", .meaning = "kept as the mean of the channels, or per channel in an image of its own", .initial = 1, .choices = {"mean", "colour"}, .rebuilds = true}};
 }
 // [/knobs]
@@ -67,19 +69,20 @@ gpu::Specialization AerialInputs::variant() const {
 // [passes]
 AerialPerspective::AerialPerspective(const app::Context& context, graph::Graph& graph, const AerialInputs& inputs)
     : context_(context), graph_(graph), inputs_(inputs), sampler_(gpu::create_sampler(context.device)),
-      radiance_resource_(graph.add("froxels", radiance_)) {
+      glow_resource_(graph.add("froxels", glow_)) {
   make_images();
   std::vector<graph::Access> accesses = inputs.accesses();
-  accesses.push_back({radiance_resource_, gpu::kComputeWrite});
+  accesses.push_back({glow_resource_, gpu::kComputeWrite});
   if (inputs.colour()) {
-    transmittance_resource_ = graph.add("froxel transmittance", transmittance_);
-    accesses.push_back({transmittance_resource_, gpu::kComputeWrite});
+    extinction_resource_ = graph.add("froxel extinction", extinction_);
+    accesses.push_back({extinction_resource_, gpu::kComputeWrite});
   }
   graph.add({.name = "aerial perspective",
              .accesses = std::move(accesses),
              .record = [this](const app::Frame& frame) {
                watch_.note(frame);
-               gpu::dispatch_over(frame.commands, pipeline_, set_, aerial_push(context_, frame), radiance_.size);
+               const uint32_t rays = kWorkgroup / threads();  // of a workgroup
+               gpu::dispatch(frame.commands, pipeline_, set_, aerial_push(context_, frame), (glow_.size.width * glow_.size.height + rays - 1) / rays);
              },
              .changed = [this](const app::Frame& frame) { return watch_.differs(frame); },
              .idle = [this](const app::Frame& frame) { return frame.camera.right.w >= context_.scene.planet.top_radius_km - context_.scene.planet.ground_radius_km; }});
@@ -87,8 +90,8 @@ AerialPerspective::AerialPerspective(const app::Context& context, graph::Graph& 
 }
 
 std::vector<graph::Access> AerialPerspective::reads() const {
-  std::vector<graph::Access> accesses{{radiance_resource_, gpu::kSampledRead}};
-  if (inputs_.colour()) accesses.push_back({transmittance_resource_, gpu::kSampledRead});
+  std::vector<graph::Access> accesses{{glow_resource_, gpu::kSampledRead}};
+  if (inputs_.colour()) accesses.push_back({extinction_resource_, gpu::kSampledRead});
   return accesses;
 }
 // [/passes]
@@ -96,28 +99,36 @@ std::vector<graph::Access> AerialPerspective::reads() const {
 // 32 bits: at dusk radiance is 1e-6 of noon's, where a half has two or three digits left of its three. True if made anew.
 bool AerialPerspective::make_images() {
   const uint32_t side = static_cast<uint32_t>(context_.settings.integer("froxels.size")), slices = static_cast<uint32_t>(context_.settings.integer("froxels.slices"));
-  if (radiance_.size.width == side && radiance_.depth == slices) return false;
+  if (glow_.size.width == side && glow_.depth == slices) return false;
   const auto make = [&](const char* name) {
     return gpu::create_image(context_.device, name, {side, side}, VK_FORMAT_R32G32B32A32_SFLOAT, VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT, slices);
   };
-  radiance_ = make("froxels");
-  if (inputs_.colour()) transmittance_ = make("froxel transmittance");
+  glow_ = make("froxels");
+  if (inputs_.colour()) extinction_ = make("froxel extinction");
   return true;
+}
+
+uint32_t AerialPerspective::threads() const {
+  const std::string& wanted = context_.settings.choice("froxels.threads");
+  if (wanted != "auto") return static_cast<uint32_t>(std::stoi(wanted));
+  return context_.device.candidate().software ? 1 : 32;
 }
 
 void AerialPerspective::rebuild() {
   if (make_images()) {
-    graph_.replace(radiance_resource_, radiance_);
-    if (inputs_.colour()) graph_.replace(transmittance_resource_, transmittance_);
+    graph_.replace(glow_resource_, glow_);
+    if (inputs_.colour()) graph_.replace(extinction_resource_, extinction_);
   }
   std::vector<gpu::Binding> bindings = inputs_.bindings();
   bindings.insert(bindings.end(), {{3, kImage}, {4, kImage}});
-  pipeline_ = gpu::create_compute_pipeline(context_.device, "11_aerial_perspective/froxels.comp", bindings, sizeof(AerialPush), inputs_.variant());
+  gpu::Specialization constants = inputs_.variant();
+  constants.push_back(threads());
+  pipeline_ = gpu::create_compute_pipeline(context_.device, "11_aerial_perspective/froxels.comp", bindings, sizeof(AerialPush), constants);
   if (set_.handle == VK_NULL_HANDLE) set_ = gpu::create_descriptor_set(context_.device, pipeline_.set_layout, pipeline_.bindings);
   inputs_.write(set_);
-  gpu::write_storage_image(context_.device, set_, 3, radiance_);
-  gpu::write_storage_image(context_.device, set_, 4, transmittance());
-  graph_.redo();
+  gpu::write_storage_image(context_.device, set_, 3, glow_);
+  gpu::write_storage_image(context_.device, set_, 4, extinction());
+  graph_.redo(glow_resource_);
 }
 
 }  // namespace welkin

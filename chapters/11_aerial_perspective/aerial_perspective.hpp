@@ -42,20 +42,21 @@ class AerialPerspective {
   AerialPerspective(const app::Context& context, graph::Graph& graph, const AerialInputs& inputs);
   AerialPerspective(const AerialPerspective&) = delete;
   void rebuild();
-  const gpu::Image& radiance() const { return radiance_; }
-  const gpu::Image& transmittance() const { return inputs_.colour() ? transmittance_ : radiance_; }
+  const gpu::Image& glow() const { return glow_; }
+  const gpu::Image& extinction() const { return inputs_.colour() ? extinction_ : glow_; }
   VkSampler sampler() const { return sampler_; }
   std::vector<graph::Access> reads() const;  // of a pass that looks them up
 
  private:
   bool make_images();
+  uint32_t threads() const;  // that share a direction
 
   const app::Context context_;
   graph::Graph& graph_;
   const AerialInputs& inputs_;
   gpu::Sampler sampler_;
-  gpu::Image radiance_, transmittance_;
-  graph::Resource radiance_resource_, transmittance_resource_ = 0;
+  gpu::Image glow_, extinction_;
+  graph::Resource glow_resource_, extinction_resource_ = 0;
   Watch watch_;
   gpu::ComputePipeline pipeline_;
   gpu::DescriptorSet set_;

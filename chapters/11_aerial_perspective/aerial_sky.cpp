@@ -104,8 +104,8 @@ void AerialSky::make_compose() {
   frames.set = gpu::create_descriptor_set(device, frames.compose.set_layout, frames.compose.bindings);
   frames.inputs->write(frames.set);
   if (frames.aerial) {
-    gpu::write_sampled_image(device, frames.set, 3, frames.aerial->radiance(), frames.aerial->sampler());
-    gpu::write_sampled_image(device, frames.set, 4, frames.aerial->transmittance(), frames.aerial->sampler());
+    gpu::write_sampled_image(device, frames.set, 3, frames.aerial->glow(), frames.aerial->sampler());
+    gpu::write_sampled_image(device, frames.set, 4, frames.aerial->extinction(), frames.aerial->sampler());
   }
   gpu::write_sampled_image(device, frames.set, 6, relief.slopes(), relief.sampler());
   gpu::write_sampled_image(device, frames.set, 7, relief.cover(), relief.sampler());

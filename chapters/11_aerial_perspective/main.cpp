@@ -3,6 +3,7 @@
 #include "chapters/02_window/window.hpp"
 #include "chapters/06_display/auto_display.hpp"
 #include "chapters/11_aerial_perspective/aerial_sky.hpp"
+#include "chapters/11_aerial_perspective/terrain_truth.hpp"
 
 using namespace welkin;
 
@@ -31,6 +32,7 @@ int main(int argc, char** argv) {
       .images = {"sky_view", "multiple_scattering", "transmittance"},
       .knobs = knobs(),
       .reference = {{"aerial.method", "march"}, {"aerial.march_slices", "256"}, {"froxels.samples", "4"}},
+      .truth = terrain_truth(),
       .standard_views = {{"noon", "horizon"}, {"noon", "airliner"}, {"sunset", "sun"}, {"sunset", "wide"}, {"twilight", "glow"}, {"alien", "horizon"}},
       .window = open_window_system,
       .make = [](const app::Context& context) { return std::make_unique<AerialSky>(context); },

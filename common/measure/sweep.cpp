@@ -51,18 +51,24 @@ void write_sweep_csv(const std::filesystem::path& file, const std::vector<Knob>&
   std::vector<std::string> names = {"view"};
   for (const Knob& knob : knobs) names.push_back("knob:" + knob.name);
   names.insert(names.end(), {"gpu_ms_median", "gpu_ms_min", "gpu_ms_max", "wall_ms"});
-  if (!rows.empty())
-    for (const auto& pass : rows.front().passes) names.push_back("pass_ms:" + pass.first);
+  std::vector<std::string> passes;  // that any row has; a setting that leaves one out spends 0 ms on it
+  for (const SweepRow& row : rows)
+    for (const auto& pass : row.passes)
+      if (std::find(passes.begin(), passes.end(), pass.first) == passes.end()) passes.push_back(pass.first);
+  for (const std::string& pass : passes) names.push_back("pass_ms:" + pass);
   names.insert(names.end(),
                {"bytes", "relative_rmse", "max_relative", "p99_relative", "mean_bias", "rmse_255", "not_finite"});
 
   std::vector<std::vector<std::string>> lines;
-  for (const auto& [values, view, gpu, wall, passes, bytes, e] : rows) {
+  for (const auto& [values, view, gpu, wall, measured, bytes, e] : rows) {
     std::vector<std::string> line = {view};
     const auto add = [&](double number) { line.push_back(csv_number(number)); };
     line.insert(line.end(), values.begin(), values.end());
     for (const double ms : {gpu.median, gpu.minimum, gpu.maximum, wall.median}) add(ms);
-    for (const auto& pass : passes) add(pass.second);
+    for (const std::string& pass : passes) {
+      const auto found = std::find_if(measured.begin(), measured.end(), [&](const auto& one) { return one.first == pass; });
+      add(found == measured.end() ? 0.0 : found->second);
+    }
     line.push_back(fmt::format("{}", bytes));
     for (const double score : {e.relative_rmse, e.max_relative, e.p99_relative, e.mean_bias, e.rmse_255}) add(score);
     line.push_back(fmt::format("{}", e.not_finite + e.not_finite_reference));

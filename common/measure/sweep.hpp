@@ -24,7 +24,7 @@ struct SweepRow {
   std::vector<std::string> values;  // one text per knob (Settings::text)
   std::string view;
   Spread gpu_ms, wall_ms;
-  std::vector<std::pair<std::string, double>> passes;  // name, median in ms; the same passes in every row
+  std::vector<std::pair<std::string, double>> passes;  // name, median in ms; of a pass that did not run, nothing
   uint64_t bytes = 0;
   Errors errors;
 };

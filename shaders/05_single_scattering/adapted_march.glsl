@@ -129,6 +129,12 @@ const float kDim = 3.0e-3;         // share of the peak below which light asks f
 const float kSlopeWeight = 0.4;    // nodes asked for per unit of optical depth, relative to those per count
 const float kLeastWeight = 0.6;    // nodes that even darkness between two bright stretches asks for
 
+// Nodes that a cell asks for. share: its light over the peak's; slope: change of the largest optical depth per count.
+float cell_weight(vec3 share, float slope, float width) {
+  vec3 bent = share / (share + kDim) * (1.0 + min(slope, 10.0) * kSlopeWeight);
+  return (kLeastWeight + bent.x + bent.y + bent.z) * width;
+}
+
 // A lit piece of the ray: cells of equal count that an estimate looks at, and the panels it is given.
 struct Piece {
   float begin;      // count at its first end
@@ -215,8 +221,7 @@ RayLight adapted_march(Atmosphere atmosphere, AirRay ray, ScatteringTowardsEye s
         piece[k].first_seen = min(piece[k].first_seen, j);
         piece[k].last_seen = j;
       }
-      share = share / (share + kDim) * (1.0 + min(seen[j].w, 10.0) * kSlopeWeight);
-      weight[j] = (kLeastWeight + share.x + share.y + share.z) * piece[k].width;
+      weight[j] = cell_weight(share, seen[j].w, piece[k].width);
     }
     for (int j = piece[k].first_seen; j <= piece[k].last_seen; j++) piece[k].weight += weight[j];
   }

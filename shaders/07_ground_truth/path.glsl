@@ -6,7 +6,8 @@
 // 2014). With one channel a path, F and P of the others are 0: the same lines compute both.
 //
 // The including file gives HAS_* and MIE_PHASE; TRACKING; HERO (const bool); ENVIRONMENT (const bool): light of radiance 1 from
-// outside in place of the sun; SPREAD (const bool): whether collisions are also put where no flight gets.
+// outside in place of the sun; SPREAD (const bool): whether collisions are also put where no flight gets; SURFACES (const
+// bool): whether a path may meet a surface before the smooth planet's.
 #ifndef WELKIN_PATH_GLSL
 #define WELKIN_PATH_GLSL
 
@@ -24,6 +25,21 @@ struct PathLight {
   bool finished;  // false: the driver ended a loop before the path was at its end
   int vertices;   // scatterings and reflections
 };
+
+// What a ray from the eye meets before anything else: a Lambert surface, of rock or whatever stands there.
+struct FirstSurface {
+  float distance_km;  // from the eye; 0: there is none
+  vec3 normal;        // unit, in the eye's local frame, towards the eye
+  vec3 albedo;
+};
+
+FirstSurface no_surface() {
+  FirstSurface surface;
+  surface.distance_km = 0.0;
+  surface.normal = vec3(0.0, 0.0, 1.0);
+  surface.albedo = vec3(0.0, 0.0, 0.0);
+  return surface;
+}
 
 // Direction of flight and of the sun in the local frame of the point reached, z up.
 struct Frame {
@@ -182,11 +198,61 @@ Frame first_frame(AirRay ray, float altitude_km, float top_km, vec3 view, vec3 s
   return frame;
 }
 
+// [surface]
+// What a flight that goes down ends on: level ground, or for the first flight a surface of any slope.
+struct Slope {
+  float distance_km;  // from where the ray is in the air
+  float altitude_km;
+  vec3 normal;        // in the frame of the point where the flight began
+  vec3 albedo;
+};
+
+Slope level_ground(Atmosphere atmosphere) {
+  Slope slope;
+  slope.distance_km = 0.0;
+  slope.altitude_km = 0.0;
+  slope.normal = vec3(0.0, 0.0, 1.0);
+  slope.albedo = vec3(atmosphere.ground);
+  return slope;
+}
+
+Slope first_slope(Atmosphere atmosphere, float altitude_km, AirRay ray, vec3 view, FirstSurface surface) {
+  float radius_km = atmosphere.shape.x;
+  float top_km = atmosphere.shape.y;
+  float begins_km = 0.0;
+  if (altitude_km > top_km) {
+    float sine = min(sqrt(view.x * view.x + view.y * view.y), 1.0);
+    begins_km = max(distance_to_shell_from_outside(radius_km, altitude_km, view.z, sine, top_km), 0.0);
+  }
+  Slope slope;
+  slope.distance_km = max(surface.distance_km - begins_km, 1.0e-6);
+  slope.altitude_km = clamp(altitude_along(radius_km, ray.altitude_km, ray.mu, slope.distance_km), 0.0, top_km);
+  slope.normal = first_frame(ray, altitude_km, top_km, view, surface.normal).sun;  // it turns as the sun's direction does
+  slope.albedo = surface.albedo;
+  return slope;
+}
+
+Course course_to(Course course, float length_km) {
+  course.length_km = length_km;
+  course.lowest_km = clamp(-(course.radius_km + course.altitude_km) * course.mu, 0.0, length_km);
+  return course;
+}
+
+// A unit vector at the end of a flight, in the frame there.
+vec3 moved_along(Course course, Frame at, vec3 v, float t_km, float altitude_km) {
+  Frame carried;
+  carried.direction = at.direction;
+  carried.sun = v;
+  return moved(course, carried, t_km, altitude_km).sun;
+}
+// [/surface]
+
 // [path]
 // Radiance along one random path, for an eye at altitude_km that looks along `view`; both directions are unit vectors in
 // the eye's local frame, z up. orders: scatterings and ground reflections at most; 0: all. Its mean over random paths is
 // the radiance of the sky and the ground, without the sun's disc.
-PathLight trace_path(Atmosphere atmosphere, float altitude_km, vec3 view, vec3 sun, int orders, Random random) {
+// `surface`, where there is one, ends the first flight; to all later ones it is not there: they meet the smooth planet.
+PathLight trace_path(Atmosphere atmosphere, float altitude_km, vec3 view, vec3 sun, FirstSurface surface, int orders, Random random) {
   float radius_km = atmosphere.shape.x;
   float top_km = atmosphere.shape.y;
   const bool closed = TRACKING == kTrackExponential || TRACKING == kTrackClosedForm;
@@ -207,6 +273,12 @@ PathLight trace_path(Atmosphere atmosphere, float altitude_km, vec3 view, vec3 s
   Frame at = first_frame(ray, altitude_km, top_km, view, sun);
   bool to_ground = ray.hits_ground;
   Course course = course_from(radius_km, top_km, ray.altitude_km, ray.mu, ray.sine, to_ground);
+  Slope slope = level_ground(atmosphere);
+  if (SURFACES && surface.distance_km > 0.0) {
+    slope = first_slope(atmosphere, altitude_km, ray, view, surface);
+    course = course_to(course, slope.distance_km);
+    to_ground = true;
+  }
   light.finished = false;
   float carried_first = 1.0;
   float spread = 0.0;
@@ -219,7 +291,7 @@ PathLight trace_path(Atmosphere atmosphere, float altitude_km, vec3 view, vec3 s
     Leg leg = fly(atmosphere, course, channel, closed && order == 1, to_ground || ENVIRONMENT ? 0.5 : 1.0, spread, random);
     random = leg.random;
     if (!leg.finished) break;
-    float altitude = leg.collided ? leg.altitude_km : (to_ground ? 0.0 : top_km);
+    float altitude = leg.collided ? leg.altitude_km : (to_ground ? slope.altitude_km : top_km);
     vec3 met = vec3(1.0, 1.0, 1.0);
     if (HERO || closed) {
       vec3 column = columns_along(atmosphere, course, leg.t_km, altitude);
@@ -237,6 +309,7 @@ PathLight trace_path(Atmosphere atmosphere, float altitude_km, vec3 view, vec3 s
       break;
     }
     light.vertices = order;
+    if (SURFACES && slope.distance_km > 0.0) slope.normal = moved_along(course, at, slope.normal, leg.t_km, altitude);
     at = moved(course, at, leg.t_km, altitude);
     random = draw(random);
     vec4 u = random.value;
@@ -261,29 +334,37 @@ PathLight trace_path(Atmosphere atmosphere, float altitude_km, vec3 view, vec3 s
       }
       float rayleigh = dot(by_rayleigh, channel);
       float mie = dot(by_mie, channel);
-      float which = u.x * (rayleigh + mie + dot(by_ozone, channel));
-      if (order == orders || which >= rayleigh + mie) {
+      float absorbs = dot(by_ozone, channel);
+      float which = u.x * (rayleigh + mie + absorbs);
+      // Without an absorber nothing ends here, not even a number that rounding took to the end of its range.
+      if (order == orders || (absorbs > 0.0 && which >= rayleigh + mie)) {
         light.finished = true;
         break;
       }
       Turn turn = rayleigh_turn(u.y, u.z);
-      if (which >= rayleigh) turn = mie_turn(atmosphere, u.y, u.z);
+      if (which >= rayleigh) {
+        MieTurn drawn = kept_mie_turn(atmosphere, u.y, u.z, random);
+        turn = drawn.turn;
+        random = drawn.random;
+      }
       at.direction = turned(at.direction, turn, u.w);
       ScatteringTowardsEye ahead = scattering_towards_eye(atmosphere, turn.one_minus_nu, turn.one_plus_nu);
       f *= ahead.rayleigh * density.x + ahead.mie * density.y;
       p /= by_any;
       p *= (HAS_RAYLEIGH ? by_rayleigh * rayleigh_phase(turn.one_minus_nu) : vec3(0.0, 0.0, 0.0)) +
-           (HAS_MIE ? by_mie * mie_turn_density(atmosphere, turn) : vec3(0.0, 0.0, 0.0));
+           (HAS_MIE ? by_mie * mie_phase(atmosphere, turn.one_minus_nu, turn.one_plus_nu) : vec3(0.0, 0.0, 0.0));
     } else {
-      f *= vec3(atmosphere.ground);
-      if (!ENVIRONMENT && at.sun.z > 0.0) {
-        Sunlight arriving = sunlight(atmosphere, 0.0, at.sun.z, TRACKING, TRACKING == kTrackNaive ? 1 : 24, random);
+      f *= slope.albedo;
+      float facing = SURFACES ? dot(at.sun, slope.normal) : at.sun.z;
+      if (!ENVIRONMENT && facing > 0.0 && (!SURFACES || sun_above_horizon(radius_km, altitude, at.sun.z))) {
+        Sunlight arriving = sunlight(atmosphere, altitude, at.sun.z, TRACKING, TRACKING == kTrackNaive ? 1 : 24, random);
         random = arriving.random;
         if (!arriving.finished) break;
         lit = arriving.transmittance;
-        light.radiance += f * arriving.transmittance * (at.sun.z * 0.31830988618379067 / mean_of(p));
+        light.radiance += f * arriving.transmittance * (facing * 0.31830988618379067 / mean_of(p));
       }
       at.direction = cosine_hemisphere(u.y, u.z);
+      if (SURFACES) at.direction = about(slope.normal, at.direction);
       if (order == orders) {
         light.finished = true;
         break;
@@ -305,6 +386,7 @@ PathLight trace_path(Atmosphere atmosphere, float altitude_km, vec3 view, vec3 s
     f /= survives;
     float sine = min(sqrt(at.direction.x * at.direction.x + at.direction.y * at.direction.y), 1.0);
     to_ground = at.direction.z < 0.0 && tangent_altitude(radius_km, altitude, at.direction.z, sine) < 0.0;
+    if (SURFACES) slope = level_ground(atmosphere);  // of the first flight only
     spread = closed && SPREAD && !ENVIRONMENT ? kSpreadLater * (1.0 - min(min(lit.x, lit.y), lit.z)) : 0.0;
     course = course_from(radius_km, top_km, altitude, at.direction.z, sine, to_ground);
   }

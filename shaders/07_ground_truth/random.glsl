@@ -33,10 +33,10 @@ Random random_stream(uint path, uint number, uint seed) {
   return random;
 }
 
-// The next four. 24 bits each, in the middle of their steps: never 0, never 1.
+// The next four. 24 bits each, in the middle of their steps: never 0; the last middle rounds to 1 and is kept below.
 Random draw(Random random) {
   uvec4 bits = pcg4d(random.key) >> 8u;
-  random.value = (vec4(bits) + 0.5) * 5.9604644775390625e-8;
+  random.value = min((vec4(bits) + 0.5) * 5.9604644775390625e-8, vec4(0.99999994, 0.99999994, 0.99999994, 0.99999994));
   random.key.w += 1u;
   return random;
 }

@@ -5,6 +5,7 @@
 #define WELKIN_SAMPLING_GLSL
 
 #include "04_air/medium.glsl"
+#include "07_ground_truth/random.glsl"
 
 struct Turn {
   float one_minus_nu;
@@ -46,17 +47,38 @@ Turn henyey_greenstein_turn(float g, float u) {
 
 // [mie_turn]
 // Directions are drawn from Henyey-Greenstein's lobe, or from the two lobes where there are two. Cornette-Shanks and Draine
-// differ from it by a factor between 3/(3 + alpha (1 + 2 g^2)) and 3, which the path's weight takes.
+// are that lobe times 1 + alpha nu^2: of the turns drawn for them a share (1 + alpha nu^2) / (1 + alpha) is kept, a third at
+// least. The weight could take the factor instead, and its mean would stay right, but a product of a thousand such factors is
+// 0 on nearly every path and enormous on one that nobody sees.
 Turn mie_turn(Atmosphere atmosphere, float which, float u) {
   float g = atmosphere.mie_extinction.w;
   if (MIE_PHASE == 3 && which < atmosphere.sun.w) g = atmosphere.ground.w;
   return henyey_greenstein_turn(g, u);
 }
 
-// Density of mie_turn() per steradian.
-float mie_turn_density(Atmosphere atmosphere, Turn turn) {
-  if (MIE_PHASE == 3) return mie_phase(atmosphere, turn.one_minus_nu, turn.one_plus_nu);
-  return henyey_greenstein_lobe(turn.one_minus_nu, turn.one_plus_nu, atmosphere.mie_extinction.w);
+bool mie_turn_kept(Atmosphere atmosphere, Turn turn, float u) {
+  if (MIE_PHASE == 0 || MIE_PHASE == 3) return true;
+  float alpha = MIE_PHASE == 1 ? 1.0 : atmosphere.sun.w;
+  float nu = 1.0 - turn.one_minus_nu;
+  return u * (1.0 + alpha) <= 1.0 + alpha * nu * nu;
+}
+
+// One that is kept, with a density that is the phase function. After 64 tries the last is taken: 5e-12 of them.
+struct MieTurn {
+  Turn turn;
+  Random random;
+};
+MieTurn kept_mie_turn(Atmosphere atmosphere, float which, float u, Random random) {
+  MieTurn drawn;
+  drawn.turn = mie_turn(atmosphere, which, u);
+  drawn.random = random;
+  bool kept = mie_turn_kept(atmosphere, drawn.turn, which);
+  for (int i = 0; i < 64 && !kept; i++) {
+    drawn.random = draw(drawn.random);
+    drawn.turn = mie_turn(atmosphere, drawn.random.value.x, drawn.random.value.y);
+    kept = mie_turn_kept(atmosphere, drawn.turn, drawn.random.value.x);
+  }
+  return drawn;
 }
 // [/mie_turn]
 
@@ -72,6 +94,17 @@ vec3 turned(vec3 axis, Turn turn, float around) {
   float sine = sqrt(max(turn.one_minus_nu * turn.one_plus_nu, 0.0));
   float angle = 6.28318530717958648 * around;
   vec3 to = axis + (first * cos(angle) + second * sin(angle)) * sine - axis * turn.one_minus_nu;
+  return to / length(to);
+}
+
+// A vector given by its components around the vertical, taken around `axis` instead. The same frame.
+vec3 about(vec3 axis, vec3 v) {
+  float side = axis.z >= 0.0 ? 1.0 : -1.0;
+  float a = -1.0 / (side + axis.z);
+  float b = axis.x * axis.y * a;
+  vec3 first = vec3(1.0 + side * axis.x * axis.x * a, side * b, -side * axis.x);
+  vec3 second = vec3(b, side + axis.y * axis.y * a, -axis.y);
+  vec3 to = first * v.x + second * v.y + axis * v.z;
   return to / length(to);
 }
 

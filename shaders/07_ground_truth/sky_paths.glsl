@@ -9,6 +9,11 @@ layout(constant_id = 5) const int TRACKING = 3;
 layout(constant_id = 6) const bool HERO = true;
 const bool ENVIRONMENT = false;
 const bool SPREAD = true;
+#ifdef FIRST_SURFACES
+const bool SURFACES = FIRST_SURFACES == 1;
+#else
+const bool SURFACES = false;
+#endif
 // [/variant]
 
 #include "07_ground_truth/path.glsl"

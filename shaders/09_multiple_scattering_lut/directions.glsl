@@ -36,9 +36,11 @@ float horizon_cosine(float ground_radius_km, float altitude_km) {
 // Light changes fastest across the horizon. On either side of it mu = mu_h + (1 - mu_h) x^2, or mu_h - (1 + mu_h) x^2, with
 // x on Gauss nodes; in azimuth midpoints, and only of the half circle: left of the sun is as right of it. So 64 directions
 // do the work of 128. `count` is a multiple of 16; from 128 on there are two panels of four nodes on either side.
+int horizon_rings(int count) { return count >= 128 ? 16 : 8; }
+
 WeightedDirection horizon_direction(int n, int count, float mu_horizon) {
-  int panels = count >= 128 ? 2 : 1;
-  int rings = 8 * panels;
+  int rings = horizon_rings(count);
+  int panels = rings / 8;
   int azimuths = count / rings;
   int ring = n % rings;
   bool up = ring < rings / 2;
@@ -59,5 +61,9 @@ WeightedDirection direction_of_set(int set, int n, int count, float mu_horizon) 
   if (set == kSetFibonacci) return fibonacci_direction(n, count);
   return horizon_direction(n, count, mu_horizon);
 }
+
+// Different zenith angles in a set, and which of them direction n has.
+int elevations_of_set(int set, int count) { return set == kSetFibonacci ? count : horizon_rings(count); }
+int elevation_of(int set, int n, int count) { return n % elevations_of_set(set, count); }
 
 #endif

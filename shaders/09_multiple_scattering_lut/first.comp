@@ -9,19 +9,22 @@ layout(binding = 1, rgba32f) uniform writeonly image2D orders;
 
 void main() {
   const ivec2 texel = ivec2(gl_WorkGroupID.xy);
-  const uint thread = gl_LocalInvocationID.x;
+  const int thread = int(gl_LocalInvocationID.x);
   const vec2 point = texel_point(texel);
-  const Atmosphere air = atmosphere;
-  const MethodAir method = method_air(air, MS_METHOD);
-  for (int layer = 0; layer < kLayers; ++layer) partial[layer][thread] = vec3(0.0);
-  for (int n = int(thread); n < DIRECTIONS; n += 64) {
-    const WeightedDirection direction = direction_of_set(DIRECTION_SET, n, DIRECTIONS, horizon_cosine(air.shape.x, point.y));
-    add_direction(direction, first_order(method, point.y, direction.look, sun_at(point.x), STEPS));
+  const vec3 sun = sun_at(point.x);
+  const MethodAir method = method_air(atmosphere, MS_METHOD);
+  clear_sums();
+  for (int item = thread; item < DIRECTIONS * PARTS; item += THREADS) {
+    const int n = item % DIRECTIONS, part = item / DIRECTIONS, ray = first_node_of(texel.y, n);
+    const WeightedDirection direction = direction_of_set(DIRECTION_SET, n, DIRECTIONS, horizon_cosine(method.air.shape.x, point.y));
+    const float nu = dot(direction.look, sun);
+    const vec2 phases = beam_phases(method.chi, nu);
+    vec3 light = part == 0 ? sun_at_end(method.air, nodes[ray + STEPS], point.x, nu) : vec3(0.0);
+    for (int i = part * STEPS / PARTS; i < (part + 1) * STEPS / PARTS; ++i) light += sun_at_node(method.air, nodes[ray + i], phases, point.x, nu);
+    add_direction(direction, light);
   }
   sum_over_threads(kLayers);
-  if (thread == 0) {
-    const vec3 mean = max(partial[0][0], vec3(kLeastMean));
-    imageStore(orders, texel, vec4(encode_mean(mean), 0.0));
-    for (int layer = 1; layer < kLayers; ++layer) imageStore(orders, texel + ivec2(0, layer * MS_SIZE), vec4(partial[layer][0] / mean, 0.0));
-  }
+  const vec3 mean = max(sum_of(0), vec3(kLeastMean));
+  for (int layer = thread; layer < kLayers; layer += THREADS)
+    imageStore(orders, texel + ivec2(0, layer * MS_SIZE), vec4(layer == 0 ? encode_mean(mean) : sum_of(layer) / mean, 0.0));
 }

@@ -65,10 +65,9 @@ vec2 scaled_moments(vec3 chi, float share) {
 
 // [source]
 // Radiance gained per km (for densities) or per count (for densities times km per count) towards an eye that looks along v.
+//   molecules, aerosol  their scattering coefficients there, or what stands for them
 //   look_z  v_z;   look_x  v_x, its part towards the sun;   chi: moments 1 and 2 of the (scaled) aerosol
-vec3 source_towards_eye(Atmosphere atmosphere, vec3 density, Moments light, vec2 chi, float look_x, float look_z) {
-  vec3 molecules = vec3(atmosphere.rayleigh) * density.x;
-  vec3 aerosol = vec3(atmosphere.mie_scattering) * density.y;
+vec3 scattered_towards_eye(vec3 molecules, vec3 aerosol, Moments light, vec2 chi, float look_x, float look_z) {
   float look_y2 = max(1.0 - look_x * look_x - look_z * look_z, 0.0);
   vec3 along = light.x * look_x + light.z * look_z;
   // k_xx + k_yy = 1 - k_zz.
@@ -79,15 +78,18 @@ vec3 source_towards_eye(Atmosphere atmosphere, vec3 density, Moments light, vec2
   return light.mean * max(source, vec3(0.0, 0.0, 0.0));
 }
 
-// The same for the sun's beam, whose moments are those of one direction: phase functions with two moments, per unit density.
-ScatteringTowardsEye broad_scattering(Atmosphere atmosphere, vec2 chi, float nu) {
+// v_x from nu = v.s: v_x sin = nu - mu mu_sun. A sun at the zenith has no horizontal direction, and no moment needs one.
+float look_x_from(float nu, float mu_sun, float look_z) {
+  float sine_sun = sqrt(max((1.0 - mu_sun) * (1.0 + mu_sun), 1.0e-6));
+  float level = sqrt(max((1.0 - look_z) * (1.0 + look_z), 0.0));
+  return clamp((nu - look_z * mu_sun) / sine_sun, -level, level);
+}
+
+// The same for the sun's beam, whose moments are those of one direction: 4 pi times the phase functions, of two moments, of
+// (molecules, aerosol).
+vec2 broad_phases(vec2 chi, float nu) {
   float second = 1.5 * nu * nu - 0.5;
-  ScatteringTowardsEye scattering;
-  scattering.rayleigh = vec3(0.0, 0.0, 0.0);
-  scattering.mie = vec3(0.0, 0.0, 0.0);
-  if (HAS_RAYLEIGH) scattering.rayleigh = vec3(atmosphere.rayleigh) * (0.079577471545947668 * (1.0 + 0.5 * second));
-  if (HAS_MIE) scattering.mie = vec3(atmosphere.mie_scattering) * (0.079577471545947668 * max(1.0 + 3.0 * chi.x * nu + 5.0 * chi.y * second, 0.0));
-  return scattering;
+  return vec2(1.0 + 0.5 * second, max(1.0 + 3.0 * chi.x * nu + 5.0 * chi.y * second, 0.0));
 }
 // [/source]
 

@@ -6,6 +6,26 @@
 #include "09_multiple_scattering_lut/gather.glsl"
 
 // [all_orders]
+// The first order of a ray, with the ground lit by sun and sky.
+// The transmittance is computed for rays that end on the ground alone.
+RayLight first_order_light(MethodAir method, Atmosphere atmosphere, AirRay ray, vec3 view_direction, vec3 sun_direction, int view_steps) {
+  ScatteringTowardsEye scattering = scattering_towards_eye(atmosphere, one_minus_cosine(view_direction, sun_direction),
+                                                           one_minus_cosine(view_direction, sun_direction * -1.0));
+  RayLight light = adapted_march(method.air, ray, scattering, max(view_steps, 1), ray.hits_ground);
+  if (ray.hits_ground) {
+    float mu_sun = mu_sun_along(ray, atmosphere.shape.x, ray.length_km, 0.0);
+    vec3 lit = lit_ground(method.air, mu_sun, 1, kRuleAdapted);
+    if (MS_METHOD != kMethodPublished) lit += sky_irradiance(atmosphere, 0.0, mu_sun) * 0.31830988618379067;
+    light.radiance += light.transmittance * vec3(atmosphere.ground) * lit;
+  }
+  return light;
+}
+
+// The further orders: light of the table, scattered towards the eye.
+vec3 further_orders_light(MethodAir method, AirRay ray, int source_steps) {
+  return source_march(method.air, source_ray(method.air, ray), source_steps, method.chi);
+}
+
 // Radiance and transmittance of a ray, all orders, without the sun's disc. Arguments as scattered_light() of chapter 05,
 // with its adapted rule.
 //   source_steps  samples of the table along the ray, rounded up to a multiple of four
@@ -19,18 +39,9 @@ RayLight all_orders_light(Atmosphere atmosphere, float altitude_km, vec3 view_di
   AirRay ray = enter_air(atmosphere, altitude_km, view_direction, sun_direction);
   if (!ray.hits_air) return result;
   MethodAir method = method_air(atmosphere, MS_METHOD);
-  ScatteringTowardsEye scattering = scattering_towards_eye(atmosphere, one_minus_cosine(view_direction, sun_direction),
-                                                           one_minus_cosine(view_direction, sun_direction * -1.0));
-  RayLight first = adapted_march(method.air, ray, scattering, max(view_steps, 1), ray.hits_ground);
-  SourceRay along = source_ray(method.air, ray);
-  result.radiance = first.radiance + source_march(method.air, along, source_steps, method.chi, kSourceTable);
-  if (ray.hits_ground) {
-    float mu_sun = mu_sun_along(ray, atmosphere.shape.x, ray.length_km, 0.0);
-    vec3 lit = lit_ground(method.air, mu_sun, 1, kRuleAdapted);
-    if (MS_METHOD != kMethodPublished) lit += sky_irradiance(atmosphere, 0.0, mu_sun) * 0.31830988618379067;
-    result.radiance += first.transmittance * vec3(atmosphere.ground) * lit;
-  }
-  if (want_transmittance) result.transmittance = ray_transmittance(atmosphere, along);
+  result.radiance = first_order_light(method, atmosphere, ray, view_direction, sun_direction, view_steps).radiance;
+  result.radiance += further_orders_light(method, ray, source_steps);
+  if (want_transmittance) result.transmittance = ray_transmittance(atmosphere, source_ray(atmosphere, ray));
   result.radiance *= vec3(atmosphere.sun);
   return result;
 }

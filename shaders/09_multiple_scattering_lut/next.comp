@@ -13,24 +13,27 @@ layout(binding = 3, rgba32f) uniform writeonly image2D orders;
 // [next]
 void main() {
   const ivec2 texel = ivec2(gl_WorkGroupID.xy);
-  const uint thread = gl_LocalInvocationID.x;
+  const int thread = int(gl_LocalInvocationID.x);
   const vec2 point = texel_point(texel);
-  const Atmosphere air = atmosphere;
-  const MethodAir method = method_air(air, MS_METHOD);
-  for (int layer = 0; layer < kLayers; ++layer) partial[layer][thread] = vec3(0.0);
-  for (int n = int(thread); n < DIRECTIONS; n += 64) {
-    const WeightedDirection direction = direction_of_set(DIRECTION_SET, n, DIRECTIONS, horizon_cosine(air.shape.x, point.y));
-    add_direction(direction, next_order(method, point.y, direction.look, sun_at(point.x), STEPS));
+  const vec3 sun = sun_at(point.x);
+  const MethodAir method = method_air(atmosphere, MS_METHOD);
+  clear_sums();
+  for (int item = thread; item < DIRECTIONS * PARTS; item += THREADS) {
+    const int n = item % DIRECTIONS, part = item / DIRECTIONS, ray = first_node_of(texel.y, n);
+    const WeightedDirection direction = direction_of_set(DIRECTION_SET, n, DIRECTIONS, horizon_cosine(method.air.shape.x, point.y));
+    const float nu = dot(direction.look, sun);
+    vec3 light = part == 0 ? table_at_end(method.air, nodes[ray + STEPS], point.x, nu) : vec3(0.0);
+    for (int i = part * STEPS / PARTS; i < (part + 1) * STEPS / PARTS; ++i)
+      light += table_at_node(method.air, nodes[ray + i], method.chi, direction.look.z, point.x, nu);
+    add_direction(direction, light);
   }
   sum_over_threads(kLayers);
-  if (thread == 0) {
-    const vec3 first_mean = decode_mean(imageLoad(first, texel).rgb);
-    const vec3 mean = max(partial[0][0] + first_mean, vec3(kLeastMean));
-    imageStore(orders, texel, vec4(encode_mean(mean), 0.0));
-    for (int layer = 1; layer < kLayers; ++layer) {
-      const ivec2 place = texel + ivec2(0, layer * MS_SIZE);
-      imageStore(orders, place, vec4((partial[layer][0] + first_mean * imageLoad(first, place).rgb) / mean, 0.0));
-    }
+  const vec3 first_mean = decode_mean(imageLoad(first, texel).rgb);
+  const vec3 mean = max(sum_of(0) + first_mean, vec3(kLeastMean));
+  for (int layer = thread; layer < kLayers; layer += THREADS) {
+    const ivec2 place = texel + ivec2(0, layer * MS_SIZE);
+    const vec3 moment = (sum_of(layer) + first_mean * imageLoad(first, place).rgb) / mean;
+    imageStore(orders, place, vec4(layer == 0 ? encode_mean(mean) : moment, 0.0));
   }
 }
 // [/next]

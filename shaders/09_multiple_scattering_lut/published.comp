@@ -10,18 +10,26 @@ layout(binding = 1, rgba32f) uniform writeonly image2D orders;
 // [published]
 void main() {
   const ivec2 texel = ivec2(gl_WorkGroupID.xy);
-  const uint thread = gl_LocalInvocationID.x;
+  const int thread = int(gl_LocalInvocationID.x);
   const vec2 point = texel_point(texel);
-  const Atmosphere air = atmosphere;
-  partial[0][thread] = vec3(0.0);
-  partial[1][thread] = vec3(0.0);
-  for (int n = int(thread); n < DIRECTIONS; n += 64) {
-    const WeightedDirection direction = direction_of_set(DIRECTION_SET, n, DIRECTIONS, horizon_cosine(air.shape.x, point.y));
-    const Transfer light = published_transfer(air, point.y, direction.look, sun_at(point.x), STEPS);
-    partial[0][thread] += light.second * direction.weight;
-    partial[1][thread] += light.transfer * direction.weight;
+  const vec3 sun = sun_at(point.x);
+  const MethodAir method = method_air(atmosphere, MS_METHOD);
+  clear_sums();
+  for (int item = thread; item < DIRECTIONS * PARTS; item += THREADS) {
+    const int n = item % DIRECTIONS, part = item / DIRECTIONS, ray = first_node_of(texel.y, n);
+    const WeightedDirection direction = direction_of_set(DIRECTION_SET, n, DIRECTIONS, horizon_cosine(method.air.shape.x, point.y));
+    const float nu = dot(direction.look, sun);
+    const vec2 phases = beam_phases(method.chi, nu);
+    vec3 second = part == 0 ? sun_at_end(method.air, nodes[ray + STEPS], point.x, nu) : vec3(0.0);
+    vec3 transfer = vec3(0.0);
+    for (int i = part * STEPS / PARTS; i < (part + 1) * STEPS / PARTS; ++i) {
+      second += sun_at_node(method.air, nodes[ray + i], phases, point.x, nu);
+      transfer += transfer_at_node(nodes[ray + i]);
+    }
+    add(0, second * direction.weight);
+    add(1, transfer * direction.weight);
   }
   sum_over_threads(2);
-  if (thread == 0) imageStore(orders, texel, vec4(encode_mean(close_series(partial[0][0], partial[1][0])), 0.0));
+  if (thread == 0) imageStore(orders, texel, vec4(encode_mean(close_series(sum_of(0), sum_of(1))), 0.0));
 }
 // [/published]

@@ -1,43 +1,57 @@
-// A workgroup's sum: what 64 directions bring to one texel. For the entry points that write the table.
+// A workgroup's sum: what the directions bring to one texel. For the entry points that write the table.
 #ifndef WELKIN_REDUCE_GLSL
 #define WELKIN_REDUCE_GLSL
 
-layout(local_size_x = 64) in;  // along x, one workgroup a texel: the directions are the threads
-layout(constant_id = 7) const int DIRECTIONS = 64;
-layout(constant_id = 8) const int DIRECTION_SET = 1;
-layout(constant_id = 9) const int STEPS = 12;
+#include "09_multiple_scattering_lut/gather_block.glsl"
 
-shared vec3 partial[kLayers][64];
+layout(local_size_x = 64) in;  // along x, one workgroup a texel
+const int THREADS = 64;
+
+// Threads that share a direction, each with its part of the nodes, where there are fewer directions than threads.
+const int PARTS = THREADS > DIRECTIONS ? THREADS / DIRECTIONS : 1;
+
+const int kNumbers = 3 * kLayers;
+shared float partial[THREADS][kNumbers];
+shared float total[kNumbers];
+
+void add(int layer, vec3 value) {
+  const uint thread = gl_LocalInvocationID.x;
+  partial[thread][3 * layer] += value.r;
+  partial[thread][3 * layer + 1] += value.g;
+  partial[thread][3 * layer + 2] += value.b;
+}
 
 // [reduce]
-// Half the threads add the other half's values, and so on: six steps. Every thread meets every barrier.
+// Thread k adds up the k-th number of every thread. A tree of halves would take six rounds and a barrier for each, most
+// threads idle; with twenty-one sums to make, everybody has one.
 void sum_over_threads(int layers) {
-  const uint thread = gl_LocalInvocationID.x;
-  for (uint half_of = 32; half_of > 0; half_of >>= 1) {
-    barrier();
-    if (thread < half_of) {
-      for (int layer = 0; layer < layers; ++layer) partial[layer][thread] += partial[layer][thread + half_of];
-    }
+  barrier();
+  for (int k = int(gl_LocalInvocationID.x); k < 3 * layers; k += THREADS) {
+    float sum = 0.0;
+    for (int thread = 0; thread < THREADS; ++thread) sum += partial[thread][k];
+    total[k] = sum;
   }
   barrier();
 }
+
+vec3 sum_of(int layer) { return vec3(total[3 * layer], total[3 * layer + 1], total[3 * layer + 2]); }
 // [/reduce]
 
-// The point a texel stands for. x: sun's zenith cosine, y: altitude.
-vec2 texel_point(ivec2 texel) { return table_point(MS_MAP, atmosphere.shape.y, table_unit_of_texel(vec2(texel), float(MS_SIZE))); }
+void clear_sums() {
+  for (int k = 0; k < kNumbers; ++k) partial[gl_LocalInvocationID.x][k] = 0.0;
+}
 
 // Adds one direction's light to this thread's sums.
 void add_direction(WeightedDirection direction, vec3 light) {
-  const uint thread = gl_LocalInvocationID.x;
   const vec3 d = direction.look;
   const vec3 weighted = light * direction.weight;
-  partial[0][thread] += weighted;
-  partial[1][thread] += weighted * d.z;
-  partial[2][thread] += weighted * d.x;
-  partial[3][thread] += weighted * (d.z * d.z);
-  partial[4][thread] += weighted * (d.x * d.z);
-  partial[5][thread] += weighted * (d.x * d.x - d.y * d.y);
-  partial[6][thread] += weighted * max(4.0 * d.z, 0.0);  // int L d_z over the upper half / pi
+  add(0, weighted);
+  add(1, weighted * d.z);
+  add(2, weighted * d.x);
+  add(3, weighted * (d.z * d.z));
+  add(4, weighted * (d.x * d.z));
+  add(5, weighted * (d.x * d.x - d.y * d.y));
+  add(6, weighted * max(4.0 * d.z, 0.0));  // int L d_z over the upper half / pi
 }
 
 #endif

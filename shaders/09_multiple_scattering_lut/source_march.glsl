@@ -6,9 +6,6 @@
 #include "05_single_scattering/adapted_march.glsl"
 #include "09_multiple_scattering_lut/table.glsl"
 
-const int kSourceTable = 0;
-const int kSourceUnit = 1;  // isotropic light of radiance 1 everywhere: the march then gives the transfer f of one ray
-
 struct SourceRay {
   AirRay ray;
   Line line;
@@ -39,24 +36,19 @@ vec3 ray_transmittance(Atmosphere atmosphere, SourceRay along) {
 }
 
 // Source per count at a point, from its densities per count.
-vec3 source_at(Atmosphere atmosphere, AirRay ray, CountedPoint point, vec3 air, vec2 chi, int kind) {
-  if (kind == kSourceUnit) return vec3(atmosphere.rayleigh) * air.x + vec3(atmosphere.mie_scattering) * air.y;
+vec3 source_at(Atmosphere atmosphere, AirRay ray, CountedPoint point, vec3 air, vec2 chi) {
   float mu_sun = mu_sun_along(ray, atmosphere.shape.x, point.t_km, point.altitude_km);
+  vec3 molecules = vec3(atmosphere.rayleigh) * air.x;
+  vec3 aerosol = vec3(atmosphere.mie_scattering) * air.y;
+  if (MS_METHOD != kMethodMoments) return multiple_scattering(atmosphere, point.altitude_km, mu_sun) * (molecules + aerosol);
   float look_z = clamp(point.s_km / (atmosphere.shape.x + point.altitude_km), -1.0, 1.0);
-  // The sun's horizontal direction at this point: v_x sin = nu - mu mu_sun. A sun at the zenith has none, and no moment
-  // needs one.
-  float sine_sun = sqrt(max((1.0 - mu_sun) * (1.0 + mu_sun), 1.0e-6));
-  float level = sqrt(max((1.0 - look_z) * (1.0 + look_z), 0.0));
-  float look_x = clamp((ray.nu - look_z * mu_sun) / sine_sun, -level, level);
-  if (MS_METHOD != kMethodMoments) {
-    return multiple_scattering(atmosphere, point.altitude_km, mu_sun) * (vec3(atmosphere.rayleigh) * air.x + vec3(atmosphere.mie_scattering) * air.y);
-  }
-  return source_towards_eye(atmosphere, air, multiple_scattering_moments(atmosphere, point.altitude_km, mu_sun), chi, look_x, look_z);
+  return scattered_towards_eye(molecules, aerosol, multiple_scattering_moments(atmosphere, point.altitude_km, mu_sun), chi,
+                               look_x_from(ray.nu, mu_sun, look_z), look_z);
 }
 
 // [source_panel]
 // Four Gauss nodes, the columns up to each from the panel's own densities: chapter 05's panel with another source.
-Stretch source_panel(Atmosphere atmosphere, SourceRay along, vec2 chi, int kind, float ozone_begin, Stretch before, float x_a, float x_b) {
+Stretch source_panel(Atmosphere atmosphere, SourceRay along, vec2 chi, float ozone_begin, Stretch before, float x_a, float x_b) {
   float dx = x_b - x_a;
   vec4 rayleigh;
   vec4 mie;
@@ -70,7 +62,7 @@ Stretch source_panel(Atmosphere atmosphere, SourceRay along, vec2 chi, int kind,
     rayleigh[i] = air.x;
     mie[i] = air.y;
     ozone[i] = ozone_from_tangent(atmosphere, along.line, point.altitude_km, point.s_km);
-    vec3 source = source_at(atmosphere, along.ray, point, air, chi, kind);
+    vec3 source = source_at(atmosphere, along.ray, point, air, chi);
     red[i] = source.x;
     green[i] = source.y;
     blue[i] = source.z;
@@ -98,7 +90,7 @@ const int kSourceCells = 16;
 // [source_march]
 // Like chapter 05's adapted march, on one piece: cells of equal count are looked at, panels share them by weight, ends
 // without light are left out.
-vec3 source_march(Atmosphere atmosphere, SourceRay along, int steps, vec2 chi, int kind) {
+vec3 source_march(Atmosphere atmosphere, SourceRay along, int steps, vec2 chi) {
   vec3 radiance = vec3(0.0, 0.0, 0.0);
   if (along.x_end <= along.x_begin) return radiance;
   int panels = max((steps + 3) / 4, 1);
@@ -113,9 +105,7 @@ vec3 source_march(Atmosphere atmosphere, SourceRay along, int steps, vec2 chi, i
     vec3 air = densities(atmosphere, point.altitude_km) * point.dt_dx;
     vec3 depth = extinction(atmosphere, column + air * (0.5 * width));
     vec3 light = (vec3(atmosphere.rayleigh) * air.x + vec3(atmosphere.mie_scattering) * air.y) * exp(-depth);
-    if (kind == kSourceTable) {
-      light *= multiple_scattering(atmosphere, point.altitude_km, mu_sun_along(along.ray, atmosphere.shape.x, point.t_km, point.altitude_km));
-    }
+    light *= multiple_scattering(atmosphere, point.altitude_km, mu_sun_along(along.ray, atmosphere.shape.x, point.t_km, point.altitude_km));
     column += air * width;
     float tau = max(max(depth.x, depth.y), depth.z);
     float slope = abs(tau - (j == 0 ? tau : tau_before)) / width;
@@ -133,8 +123,7 @@ vec3 source_march(Atmosphere atmosphere, SourceRay along, int steps, vec2 chi, i
       first = min(first, j);
       last = j;
     }
-    share = share / (share + kDim) * (1.0 + min(seen[j].w, 10.0) * kSlopeWeight);
-    weight[j] = (kLeastWeight + share.x + share.y + share.z) * width;
+    weight[j] = cell_weight(share, seen[j].w, width);
   }
   if (last < first) return radiance;
   float total = 0.0;
@@ -157,7 +146,7 @@ vec3 source_march(Atmosphere atmosphere, SourceRay along, int steps, vec2 chi, i
     if (at_end) cell = last;
     float into = at_end ? 1.0 : clamp((wanted - passed) / weight[cell], 0.0, 1.0);
     float to = min(along.x_begin + width * (float(cell) + into), along.x_end);
-    march = source_panel(atmosphere, along, chi, kind, ozone_begin, march, from, to);
+    march = source_panel(atmosphere, along, chi, ozone_begin, march, from, to);
     from = to;
   }
   return march.radiance;

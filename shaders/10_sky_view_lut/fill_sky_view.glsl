@@ -23,21 +23,41 @@ layout(push_constant) uniform Push {
 };
 
 // [fill]
+// A workgroup has 32 texels of one row: rays of one zenith angle, which take the same turns. Two invocations share a texel,
+// one for the first order and one for all the others: a GPU waits for the longest march, not for their sum.
+#ifdef SINGLE_ORDER
+layout(local_size_x = 32) in;
+#else
+layout(local_size_x = 32, local_size_y = 2) in;
+shared vec3 further[32];
+#endif
+
 void main() {
-  const ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
   const ivec2 size = imageSize(sky_view);
-  if (any(greaterThanEqual(texel, size))) return;
+  const int x = int(gl_LocalInvocationID.x);
+  // Everybody meets the barrier: beyond the row's end the last texel is done once more.
+  const ivec2 texel = ivec2(min(int(gl_WorkGroupID.x) * 32 + x, size.x - 1), gl_WorkGroupID.y);
   const Atmosphere air = atmosphere;
   const SkyViewPlace at = sky_view_texel(texel, size);
   const vec2 zenith = sky_view_zenith(horizon_at(air.shape.x, place.x), at.from_horizon, at.below);
   const vec3 view = vec3(sky_view_azimuth(at.across) * zenith.y, zenith.x);
   const vec3 sun = vec3(place.z, 0.0, place.y);
 #ifdef SINGLE_ORDER
-  const RayLight light = scattered_light(air, place.x, view, sun, steps.x, 1, kRuleAdapted, false);
+  const vec3 light = scattered_light(air, place.x, view, sun, steps.x, 1, kRuleAdapted, false).radiance;
 #else
-  const RayLight light = all_orders_light(air, place.x, view, sun, steps.x, steps.y, false);
+  const MethodAir method = method_air(air, MS_METHOD);
+  const AirRay ray = enter_air(air, place.x, view, sun);
+  vec3 light = vec3(0.0);
+  if (gl_LocalInvocationID.y == 1) {
+    further[x] = ray.hits_air ? further_orders_light(method, ray, steps.y) : light;
+  } else if (ray.hits_air) {
+    light = first_order_light(method, air, ray, view, sun, steps.x).radiance;
+  }
+  barrier();
+  if (gl_LocalInvocationID.y == 1) return;
+  light = (light + further[x]) * air.sun.rgb;
 #endif
-  imageStore(sky_view, texel, vec4(min(light.radiance / SKY_VIEW_UNIT, vec3(65504.0)), 1.0));
+  imageStore(sky_view, texel, vec4(min(light / SKY_VIEW_UNIT, vec3(65504.0)), 1.0));
 }
 // [/fill]
 

@@ -1,7 +1,6 @@
 // The sky view table in numbers of 32 bits.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 2, rgba32f) uniform writeonly image2D sky_view;
 const float SKY_VIEW_UNIT = 1.0;
 #include "10_sky_view_lut/fill_sky_view.glsl"

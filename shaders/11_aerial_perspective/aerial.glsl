@@ -17,13 +17,25 @@ vec3 sun_through_air(Atmosphere air, float altitude_km, float mu_sun) {
   return exp(extinction(air, sun_columns(air, altitude_km, mu_sun)) * -1.0);
 }
 
+// Air between the eye and a point: the light it adds, and its optical depth.
+struct Veil {
+  vec3 radiance;
+  vec3 depth;
+};
+
+Veil no_veil() {
+  Veil veil;
+  veil.radiance = vec3(0.0, 0.0, 0.0);
+  veil.depth = vec3(0.0, 0.0, 0.0);
+  return veil;
+}
+
 // [air_segment]
 // The air from t_a to t_b, behind what `before` holds. One node in the middle, or pairs of Gauss-Legendre nodes; each is a
 // piece of constant source and extinction. Pieces tile the segment: nothing is left out at its end, wherever that is.
-RayLight behind(MethodAir method, AirRay ray, ScatteringTowardsEye scattering, RayLight before, float t_a, float t_b,
-                int samples) {
+Veil behind(MethodAir method, AirRay ray, ScatteringTowardsEye scattering, Veil before, float t_a, float t_b, int samples) {
   Atmosphere air = method.air;
-  RayLight light = before;
+  Veil veil = before;
   float dt = (t_b - t_a) / float(samples);
   for (int i = 0; i < samples; i++) {
     float offset = samples == 1 ? 0.5 : (i % 2 == 0 ? 0.42264973081037424 : 0.57735026918962576);
@@ -38,22 +50,15 @@ RayLight behind(MethodAir method, AirRay ray, ScatteringTowardsEye scattering, R
       float mu_sun = mu_sun_along(ray, air.shape.x, point.t_km, point.altitude_km);
       vec3 source = (scattering.rayleigh * density.x + scattering.mie * density.y) * sun_through_air(air, point.altitude_km, mu_sun) *
                     sun_behind_terrain(point.t_km, point.altitude_km);
-      if (HIGHER_ORDERS) source += source_at(air, ray, point, density, method.chi, kSourceTable);
+      if (HIGHER_ORDERS) source += source_at(air, ray, point, density, method.chi);
       vec3 mean = vec3(mean_transmittance(tau.x), mean_transmittance(tau.y), mean_transmittance(tau.z));
-      light.radiance += light.transmittance * source * mean * dt;
-      light.transmittance *= exp(tau * -1.0);
+      veil.radiance += exp(veil.depth * -1.0) * source * mean * dt;
+      veil.depth += tau;
     }
   }
-  return light;
+  return veil;
 }
 // [/air_segment]
-
-RayLight no_air() {
-  RayLight light;
-  light.radiance = vec3(0.0, 0.0, 0.0);
-  light.transmittance = vec3(1.0, 1.0, 1.0);
-  return light;
-}
 
 // [slices]
 // Distance of the far end of the first s of n slices, d = d_max (s / n)^power; and how many slices lie before a distance.
@@ -63,31 +68,49 @@ float slices_before(float t_km, float slices, float farthest_km, float power) {
 }
 // [/slices]
 
-// [first_slice]
-// The first slice up to the share x of its length, from what is stored for its end. Between the eye (L = 0, T = 1) and that
-// end lies no texel to interpolate with: the slice is taken as homogeneous,
-//   T(x) = T^x,      L(x) = L (1 - T^x) / (1 - T),      and 1 - T^x = x tau phi(x tau), phi the mean transmittance.
-RayLight within_first_slice(RayLight whole, float x) {
-  vec3 tau = log(max(whole.transmittance, vec3(1.0e-30, 1.0e-30, 1.0e-30))) * -1.0;
-  vec3 share = vec3(mean_transmittance(tau.x * x) / mean_transmittance(tau.x), mean_transmittance(tau.y * x) / mean_transmittance(tau.y),
-                    mean_transmittance(tau.z * x) / mean_transmittance(tau.z));
-  RayLight part;
-  part.radiance = whole.radiance * share * x;
-  part.transmittance = exp(tau * (x * -1.0));
-  return part;
+// [froxel]
+// What a froxel keeps of the air up to its far end, at distance d: not L and T, which change many times over from one slice to
+// the next, but what the air would be if it were homogeneous up to there,
+//   extinction = tau / d,      glow = L / (1 - T),      so that      T = exp(-extinction d),      L = glow (1 - T).
+// Both hardly change with d, and tend to the air's own at the eye. 1 - T is tau phi(tau), phi the mean transmittance.
+struct Froxel {
+  vec3 glow;
+  vec3 extinction;  // per km
+};
+
+vec3 opacity(vec3 tau) {
+  return vec3(tau.x * mean_transmittance(tau.x), tau.y * mean_transmittance(tau.y), tau.z * mean_transmittance(tau.z));
 }
-// [/first_slice]
+
+Froxel froxel_of(Veil veil, float d_km) {
+  Froxel froxel;
+  froxel.glow = veil.radiance / max(opacity(veil.depth), vec3(1.0e-30, 1.0e-30, 1.0e-30));
+  froxel.extinction = veil.depth / d_km;
+  return froxel;
+}
+
+RayLight light_before(Froxel froxel, float d_km) {
+  vec3 tau = froxel.extinction * d_km;
+  RayLight light;
+  light.radiance = froxel.glow * opacity(tau);
+  light.transmittance = exp(tau * -1.0);
+  return light;
+}
+// [/froxel]
 
 // [march_to]
 // All the air up to distance d: the same slices, laid so that the last ends there.
 RayLight march_to(MethodAir method, AirRay ray, ScatteringTowardsEye scattering, float d_km, int slices, int samples, float power) {
-  RayLight light = no_air();
+  Veil veil = no_veil();
   float t_a = 0.0;
   for (int k = 0; k < slices; k++) {
     float t_b = slice_end(float(k + 1), float(slices), d_km, power);
-    light = behind(method, ray, scattering, light, t_a, t_b, samples);
+    veil = behind(method, ray, scattering, veil, t_a, t_b, samples);
     t_a = t_b;
   }
+  RayLight light;
+  light.radiance = veil.radiance;
+  light.transmittance = exp(veil.depth * -1.0);
   return light;
 }
 // [/march_to]

@@ -10,8 +10,8 @@ layout(constant_id = 23) const bool HAS_SIGNS = true;
 layout(constant_id = 24) const float NEAR_KM = 1.0e-4;
 
 #if FROXELS
-layout(binding = 3) uniform sampler3D radiance;
-layout(binding = 4) uniform sampler3D transmittance;
+layout(binding = 3) uniform sampler3D glows;
+layout(binding = 4) uniform sampler3D extinctions;
 #endif
 layout(binding = 5) uniform sampler2D depth_map;
 layout(binding = 6) uniform sampler2D slope_map;
@@ -23,16 +23,15 @@ layout(binding = 9, rgba32f) uniform writeonly image2D target;
 // [froxel_light]
 // The air up to a distance from the froxels, filtered. place: 0 ... 1 over the picture.
 RayLight froxel_light(vec2 place, float t_km) {
-  const vec3 count = vec3(textureSize(radiance, 0));
+  const vec3 count = vec3(textureSize(glows, 0));
   const float s = slices_before(t_km, count.z, east.w, POWER);
-  // Texel k holds the end of slice k: s = k + 1 is found at its centre.
+  // Texel k holds the end of slice k: s = k + 1 is found at its centre. Before the first one the air is taken as that up to it.
   const vec3 uvw = vec3(0.5 / count.xy + place * (1.0 - 1.0 / count.xy), (max(s, 1.0) - 0.5) / count.z);
-  const vec4 stored = textureLod(radiance, uvw, 0.0);
-  RayLight light;
-  light.radiance = stored.rgb;
-  light.transmittance = HAS_COLOUR ? textureLod(transmittance, uvw, 0.0).rgb : stored.aaa;
-  if (s < 1.0) light = within_first_slice(light, t_km / slice_end(1.0, count.z, east.w, POWER));
-  return light;
+  const vec4 stored = textureLod(glows, uvw, 0.0);
+  Froxel froxel;
+  froxel.glow = stored.rgb;
+  froxel.extinction = HAS_COLOUR ? textureLod(extinctions, uvw, 0.0).rgb : stored.aaa;
+  return light_before(froxel, t_km);
 }
 // [/froxel_light]
 #endif
@@ -44,7 +43,7 @@ RayLight air_before(Atmosphere air, vec2 place, vec3 view, float t_km) {
   if (!above && t_km <= east.w) return froxel_light(place, t_km);
 #endif
   const ClippedRay ray = clipped_ray(view, camera.right.w);
-  if (!ray.air.hits_air) return no_air();
+  if (!ray.air.hits_air) return RayLight(vec3(0.0), vec3(1.0));
   RayLight light = march_to(method_air(air, MS_METHOD), ray.air, scattering_along(air, view, camera.sun.xyz), max(t_km - ray.begins_km, 0.0), MARCH_SLICES, SAMPLES, above ? 1.0 : POWER);
   light.radiance *= air.sun.xyz;
   return light;

@@ -1,34 +1,69 @@
-// The air in front of the camera as a box of texels: 32 x 32 directions, and behind each other the slices. An invocation is
-// one direction; it marches through all slices and keeps what has gathered at the far end of each.
+// The air in front of the camera as a box of texels: directions, and behind each other the slices. A direction is shared by
+// THREADS invocations, each of which marches through one slice of a round as if the eye were at its near end; what lies before
+// it is then put in front. With one thread that is the plain march outwards, slice by slice.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 64) in;
 #include "11_aerial_perspective/block.glsl"
 
-layout(binding = 3, rgba32f) uniform writeonly image3D radiance;       // w: mean transmittance
-layout(binding = 4, rgba32f) uniform writeonly image3D transmittance;  // per channel
+layout(constant_id = 22) const int THREADS = 1;  // that share a direction: 1 ... 64, a power of two
+const int RAYS = 64 / THREADS;                   // directions of a workgroup
+
+layout(binding = 3, rgba32f) uniform writeonly image3D glows;        // w: extinction of the mean
+layout(binding = 4, rgba32f) uniform writeonly image3D extinctions;  // per channel
+
+shared vec3 shared_depth[2][THREADS][RAYS];  // of one round of slices, and of the next
+shared vec3 shared_light[2][THREADS][RAYS];
+
+void store(ivec3 texel, Veil veil, float d_km, vec3 sun) {
+  const vec3 through = exp(-veil.depth);
+  const float mean = -log(max((through.r + through.g + through.b) / 3.0, 1.0e-37));
+  // The mean's own depth, where 1 - T still has digits; below that the depths' mean is the same.
+  const float mean_depth = mean < 1.0e-2 ? (veil.depth.r + veil.depth.g + veil.depth.b) / 3.0 : mean;
+  if (!HAS_COLOUR) veil.depth = vec3(mean_depth);
+  const Froxel froxel = froxel_of(veil, d_km);
+  imageStore(glows, texel, vec4(froxel.glow * sun, mean_depth / d_km));
+  if (HAS_COLOUR) imageStore(extinctions, texel, vec4(froxel.extinction, 0.0));
+}
 
 // [froxels]
 void main() {
-  const ivec3 texel = ivec3(gl_GlobalInvocationID);
-  const ivec2 count = imageSize(radiance).xy;
-  if (any(greaterThanEqual(texel.xy, count))) return;
+  const int part = int(gl_LocalInvocationID.x) / RAYS, ray = int(gl_LocalInvocationID.x) % RAYS;
+  const ivec2 count = imageSize(glows).xy;
+  const int column = int(gl_WorkGroupID.x) * RAYS + ray;
+  const ivec2 texel = ivec2(column % count.x, column / count.x);
   const Atmosphere air = atmosphere;
   const MethodAir method = method_air(air, MS_METHOD);
   // The outer texels lie on the picture's edges: all of the picture is between directions, nothing is extrapolated.
-  const vec2 place = vec2(texel.xy) / vec2(count - 1) * 2.0 - 1.0;
+  const vec2 place = vec2(texel) / vec2(count - 1) * 2.0 - 1.0;
   const vec3 view = normalize(camera.forward.xyz + camera.right.xyz * place.x - camera.up.xyz * place.y);
-  const ClippedRay ray = clipped_ray(view, camera.right.w);
+  const ClippedRay in_air = clipped_ray(view, camera.right.w);
   const ScatteringTowardsEye scattering = scattering_along(air, view, camera.sun.xyz);
-  RayLight light = no_air();
-  float t_a = 0.0;
-  for (int k = 0; k < SLICES; ++k) {
-    const float t_b = slice_end(float(k + 1), float(SLICES), east.w, POWER);
-    light = behind(method, ray.air, scattering, light, t_a, t_b, SAMPLES);
-    t_a = t_b;
-    const vec3 through = light.transmittance;
-    imageStore(radiance, ivec3(texel.xy, k), vec4(light.radiance * air.sun.xyz, (through.r + through.g + through.b) / 3.0));
-    if (HAS_COLOUR) imageStore(transmittance, ivec3(texel.xy, k), vec4(through, 0.0));
+  Veil before = no_veil();  // all slices of the rounds before
+  for (int round = 0; round * THREADS < SLICES; ++round) {
+    const int k = min(round * THREADS + part, SLICES - 1);
+    const bool own = round * THREADS + part < SLICES && texel.y < count.y;
+    const float t_a = slice_end(float(k), float(SLICES), east.w, POWER), t_b = slice_end(float(k + 1), float(SLICES), east.w, POWER);
+    if (THREADS == 1) {
+      before = behind(method, in_air.air, scattering, before, t_a, t_b, SAMPLES);
+      if (own) store(ivec3(texel, k), before, t_b, air.sun.xyz);
+      continue;
+    }
+    Veil slice = no_veil();
+    if (own) slice = behind(method, in_air.air, scattering, slice, t_a, t_b, SAMPLES);
+    shared_depth[round % 2][part][ray] = slice.depth;
+    barrier();
+    vec3 depth = before.depth;
+    for (int i = 0; i < part; ++i) depth += shared_depth[round % 2][i][ray];
+    shared_light[round % 2][part][ray] = exp(-depth) * slice.radiance;
+    barrier();
+    Veil veil = Veil(before.radiance, depth + slice.depth);
+    for (int i = 0; i < THREADS; ++i) {
+      if (i <= part) veil.radiance += shared_light[round % 2][i][ray];
+      before.radiance += shared_light[round % 2][i][ray];
+      before.depth += shared_depth[round % 2][i][ray];
+    }
+    if (own) store(ivec3(texel, k), veil, t_b, air.sun.xyz);
   }
 }
 // [/froxels]

@@ -127,8 +127,8 @@ class Probe(WelkinCase):
         """The disc is never in a probe, each row brings its own sun, and the picture's size is none of its business."""
         rays = [["0.0005", "30", "30", "0"], ["0.0005", "89.9", "89.9", "0"], ["400", "105", "30", "10"]]
         plain = self.probe(rays)
-        for arguments in (["--set", "sun.disc=on"], ["--set", "sun.disc=off"], ["--set", "sun.zenith_deg=10"],
-                          ["--set", "sun.azimuth_deg=77"], ["--size", "16x16"], ["--size", "640x360"]):
+        for arguments in (["--set", "sun.disc=on", "--set", "sun.zenith_deg=10", "--size", "16x16"],
+                          ["--set", "sun.disc=off", "--set", "sun.azimuth_deg=77", "--size", "640x360"]):
             self.assertEqual(self.probe(rays, *arguments), plain, arguments)
 
     def test_rays_that_miss(self):

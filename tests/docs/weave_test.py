@@ -3,14 +3,19 @@
 
 Run: python3 tests/docs/weave_test.py
 """
+import contextlib
+import io
 import json
-import subprocess
 import sys
 import tempfile
+import types
 import unittest
 from pathlib import Path
+from unittest import mock
 
-WEAVE = Path(__file__).resolve().parents[2] / "docs/weave.py"
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "docs"))
+import weave  # noqa: E402
+
 SHADER = """// Phase functions: how light turns. Units: 1/sr.
 // [whole]
 float a() {
@@ -81,7 +86,11 @@ class Weave(unittest.TestCase):
         path.write_text(text, encoding="utf-8")
 
     def run_weave(self, *options):
-        return subprocess.run([sys.executable, "-I", "-S", WEAVE, "--root", self.root, *options], capture_output=True, text=True)
+        """Exit code and output of weave.py, called and not started: as a program it runs in docs.fresh."""
+        out, error = io.StringIO(), io.StringIO()
+        with mock.patch.object(sys, "argv", ["weave.py", "--root", str(self.root), *options]), contextlib.redirect_stdout(out), contextlib.redirect_stderr(error):
+            code = weave.main()
+        return types.SimpleNamespace(returncode=code, stdout=out.getvalue(), stderr=error.getvalue())
 
     def page(self, text, name="docs/chapters/05_sky.md"):
         self.put(name, text)

@@ -4,11 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <sstream>
-#include <stdexcept>
 #include <utility>
 
+#include "common/image/csv.hpp"
 #include "tests/gpu/harness.hpp"
 
 namespace welkin::test {
@@ -111,19 +109,20 @@ SkyRay ray_from_degrees(double altitude_km, double view_zenith_deg, double sun_z
 }
 
 std::vector<TruthRow> truth_rows(const std::string& file, const reference::Planet& planet) {
-  std::ifstream stream(std::string(WELKIN_TEST_DATA) + "/" + file);
-  if (!stream) throw std::runtime_error("cannot read tests/data/" + file);
-  std::vector<TruthRow> rows;
-  bool header = true;
-  for (std::string line; std::getline(stream, line);) {
-    if (line.empty() || line[0] == '#') continue;
-    if (std::exchange(header, false)) continue;
-    std::vector<double> v;
-    std::stringstream fields(line);
-    for (std::string field; std::getline(fields, field, ',');) v.push_back(v.size() == 4 ? 0.0 : std::stod(field));
-    if (v.size() != 26) throw std::runtime_error(file + ": a row without 26 fields");
-    const auto rgb = [&](size_t i) { return reference::Rgb{v[i], v[i + 1], v[i + 2]}; };
-    rows.push_back({v[1], v[2], v[3], ray_from_degrees(v[0], v[1], v[2], v[3]), rgb(13), rgb(16), rgb(19), rgb(22)});
+  const CsvTable table =
+      read_csv(std::string(WELKIN_TEST_DATA "/") + file,
+               {"h_km", "view_zenith_deg", "sun_zenith_deg", "rel_azimuth_deg", "ground1_r", "ground1_g", "ground1_b",
+                "Tview_r", "Tview_g", "Tview_b", "L_HG_r", "L_HG_g", "L_HG_b", "L_CS_r", "L_CS_g", "L_CS_b"},
+               {"ray_end"});
+  std::vector<TruthRow> rows(table.rows);
+  for (size_t i = 0; i < table.rows; ++i) {
+    const auto at = [&](const std::string& name) { return table.column(name)[i]; };
+    const auto rgb = [&](const std::string& name) {
+      return reference::Rgb{at(name + "_r"), at(name + "_g"), at(name + "_b")};
+    };
+    const double view = at("view_zenith_deg"), sun = at("sun_zenith_deg"), azimuth = at("rel_azimuth_deg");
+    rows[i] = {view,           sun,          azimuth,     ray_from_degrees(at("h_km"), view, sun, azimuth),
+               rgb("ground1"), rgb("Tview"), rgb("L_HG"), rgb("L_CS")};
   }
 
   std::set<Camera> cameras;

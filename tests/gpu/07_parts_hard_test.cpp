@@ -1,4 +1,5 @@
 // The parts of chapter 07, one by one, with what goes wrong in their place.
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -48,8 +49,8 @@ TEST_CASE("random numbers are the published hash and uniform") {
   for (int i = 0; i < kCount; ++i) {
     const std::array<uint32_t, 4> bits = pcg4d({uint32_t(i % 256), uint32_t(i / 256), 3u, uint32_t(i % 3)});
     for (int k = 0; k < 4; ++k) {
-      REQUIRE(results[i][k] ==
-              static_cast<float>((double(bits[k] >> 8) + 0.5) * 0x1p-24));  // the same bits on every device
+      REQUIRE(results[i][k] == std::min(static_cast<float>((double(bits[k] >> 8) + 0.5) * 0x1p-24),
+                                        0.99999994f));  // the same bits on every device
       mean[k] += results[i][k] - 0.5;
       square[k] += (results[i][k] - 0.5) * (results[i][k] - 0.5);
     }
@@ -101,15 +102,14 @@ TEST_CASE("turns are drawn from the phase functions") {
       items.push_back({kTurn, one.mie ? 1.0f : 0.0f, float(random.uniform(0, 1)), float(random.uniform(0, 1)),
                        float(random.uniform(-1, 1)), one.g, one.second_g, one.shape});
     const std::vector<Item> results = parts(items, one.phase);
-    double weight = 0.0, sums[2] = {}, squares[2] = {};
+    double sums[2] = {}, squares[2] = {};
     for (const Item& r : results) {
       REQUIRE(r[0] >= 0.0f);
       REQUIRE(std::abs(r[0] + r[1] - 2.0f) < 1e-6f);
       REQUIRE(std::abs(r[2] - r[0]) < 2e-6f + 1e-4f * r[0]);  // the direction makes the turn that was drawn
       REQUIRE(std::abs(r[3] - 1.0f) < 1e-6f);
-      const double w = one.mie ? r[5] / double(r[4]) : 1.0, nu = 1.0 - r[0];
-      weight += w / kCount;
-      const double values[2] = {w * nu, w * nu * nu};
+      const double nu = 1.0 - r[0];
+      const double values[2] = {nu, nu * nu};
       for (int k = 0; k < 2; ++k) sums[k] += values[k] / kCount, squares[k] += values[k] * values[k] / kCount;
     }
     double want[2] = {}, norm = 0.0;
@@ -131,8 +131,7 @@ TEST_CASE("turns are drawn from the phase functions") {
       norm += share, want[0] += share * nu, want[1] += share * nu * nu;
     }
     REQUIRE(norm == Approx(1.0).epsilon(1e-4));
-    CAPTURE(one.mie, one.phase, one.g, weight, sums[0], want[0], sums[1], want[1]);
-    CHECK(weight == Approx(1.0).epsilon(0.02));
+    CAPTURE(one.mie, one.phase, one.g, sums[0], want[0], sums[1], want[1]);
     for (int k = 0; k < 2; ++k)
       CHECK(std::abs(sums[k] - want[k]) <
             4.0 * std::sqrt(std::max(squares[k] - sums[k] * sums[k], 0.0) / kCount) + 1e-5);

@@ -16,12 +16,14 @@ namespace {
 constexpr size_t kBatch = 1 << 15;
 
 RayItem path_item(const reference::Planet& planet, const PathRay& ray, int paths) {
-  RayItem item = ray_item(planet, ray.ray, {.g = ray.g});
+  // Distances to surfaces are the eye's: such a ray begins there, in space as well.
+  RayItem item = ray_item(planet, ray.ray, {.g = ray.g, .enter_in_double = ray.surface_km == 0.0});
   for (int c = 0; c < 3; ++c) item.ground[c] = static_cast<float>(ray.albedo[c]);
   item.ground[3] = static_cast<float>(ray.second_g);
   item.sun_irradiance[3] = static_cast<float>(ray.shape);
   item.steps[0] = static_cast<float>(paths);
   item.steps[2] = static_cast<float>(ray.orders);
+  item.steps[3] = static_cast<float>(ray.surface_km);
   return item;
 }
 
@@ -36,7 +38,8 @@ std::vector<PathMean> trace(const reference::Planet& planet, const std::vector<P
                                       static_cast<uint32_t>(variant.tracking),
                                       variant.hero,
                                       variant.environment,
-                                      variant.spread};
+                                      variant.spread,
+                                      variant.surfaces};
   constexpr size_t kFloats = sizeof(RayItem) / sizeof(float);
   struct Sum {
     double sum[3] = {}, squares[3] = {}, unfinished = 0.0, longest = 0.0;
@@ -113,6 +116,17 @@ double ZScores::mean() const {
   double sum = 0.0;
   for (double z : values) sum += z;
   return sum / double(values.size());
+}
+
+UnfoundLight unfound_light() {
+  UnfoundLight light;
+  for (const OrdersRow& row : orders_rows("multiple_scattering_alien_cs.csv"))
+    if (row.channel == 2 && row.ray.ray.altitude_km < 0.001 && row.ray.ray.view[2] > 0.08 &&
+        row.ray.ray.view[2] < 0.09 && row.ray.ray.sun[2] > 0.03 && row.ray.ray.sun[2] < 0.04)
+      light = {row.ray, row.radiance[0]};
+  REQUIRE(light.want > 0.0);
+  light.ray.orders = 1;
+  return light;
 }
 
 reference::Planet planet_of(bool alien) { return alien ? reference::dense_alien() : reference::earth(); }

@@ -20,6 +20,7 @@ struct PathVariant {
   bool environment = false;  // uniform light of radiance 1 from outside in place of the sun
   Phase phase = kCornetteShanks;
   bool rayleigh = true, mie = true, ozone = true;
+  bool surfaces = false;  // rays end on a surface, level as the eye is, where PathRay says so
 };
 
 struct PathRay {
@@ -29,6 +30,7 @@ struct PathRay {
   uint32_t seed = 1;
   double g = 0.8;
   double second_g = 0.0, shape = 0.0;  // double HG's second lobe; Draine's alpha or the second lobe's weight
+  double surface_km = 0.0;             // distance to a surface of the ground's albedo; 0: none
 };
 
 struct PathMean {
@@ -69,6 +71,14 @@ inline constexpr OrdersTable kTables[] = {{"multiple_scattering_earth_cs.csv", f
 // Nothing darker is scored: a thousandth of moonlight. Few paths find what little light is there, and the spread of
 // those that did not says nothing.
 inline constexpr double kDark = 1e-8;
+
+// The blue light of the dense planet's dusk, scattered once, that lies behind an optical depth of twenty; the table's
+// row.
+struct UnfoundLight {
+  PathRay ray;
+  double want = 0.0;  // by quadrature
+};
+UnfoundLight unfound_light();
 
 reference::Planet planet_of(bool alien);
 double score(double got, double error, double want, double want_error);

@@ -74,24 +74,60 @@ TEST_CASE("speed: the default is ten times the naive tracker") {
   CHECK(naive > 10.0 * standard);
 }
 
-// A planet of soot-free cloud, thirty times as dense: paths of tens of thousands of vertices. lavapipe ends all loops
-// of an invocation after 65,535 turns; the path says that it was not finished instead of losing the rest of its light
-// in silence.
-TEST_CASE("hard: paths that the driver cuts are counted") {
+// A planet of soot-free cloud: the dense one `times` as dense, with nothing that absorbs.
+reference::Planet cloud(double times) {
   reference::Planet planet = reference::dense_alien();
   for (int c = 0; c < 3; ++c) {
-    planet.rayleigh_scattering_per_km[c] *= 300.0;
-    planet.mie_scattering_per_km[c] *= 300.0;
+    planet.rayleigh_scattering_per_km[c] *= times;
+    planet.mie_scattering_per_km[c] *= times;
   }
   planet.mie_extinction_per_km = planet.mie_scattering_per_km;
+  return planet;
+}
+
+// Paths of thousands of vertices in a furnace. What a path carries must not be a product of thousands of random
+// factors, not even of factors whose mean is 1: nearly every such product is 0, and the mean would be too low with a
+// standard error that denies it. (Drawn from Henyey-Greenstein and weighted, Cornette-Shanks did that.)
+TEST_CASE("hard: light is kept over thousands of scatterings") {
+  struct Case {
+    Phase phase;
+    double g, shape;
+  };
+  for (const Case& one : {Case{kCornetteShanks, 0.8, 0.0}, {kDraine, 0.6, 3.0}, {kHenyeyGreenstein, 0.8, 0.0}}) {
+    std::vector<PathRay> rays;
+    for (const double zenith : {60.0, 120.0})
+      rays.push_back({.ray = ray_from_degrees(10.0, zenith, 45.0, 0.0),
+                      .albedo = {1.0, 1.0, 1.0},
+                      .seed = static_cast<uint32_t>(zenith),
+                      .g = one.g,
+                      .shape = one.shape});
+    for (const PathMean& mean :
+         trace(cloud(6.0), rays, {.environment = true, .phase = one.phase, .ozone = false}, 512, 1)) {
+      CHECK(mean.unfinished == 0.0);
+      CHECK(mean.longest > 1000.0);
+      for (int c = 0; c < 3; ++c) {
+        CAPTURE(one.phase, c, mean.mean[c], mean.error[c], mean.longest);
+        CHECK(mean.error[c] < 0.1);
+        CHECK(std::abs(mean.mean[c] - 1.0) < 4.0 * mean.error[c] + 2e-3);
+      }
+    }
+  }
+}
+
+// Fifty times as dense again: paths of up to a million vertices. A driver may end all loops of an invocation after
+// 65,535 turns (lavapipe does), and a path ends itself after 65,000 vertices; either says that it was not finished
+// instead of losing the rest of its light in silence. What is finished brings between 0 and 3 a channel, 1 on average.
+TEST_CASE("hard: paths that the driver cuts are counted") {
   std::vector<PathRay> rays{{.ray = ray_from_degrees(10.0, 60.0, 45.0, 0.0), .albedo = {1.0, 1.0, 1.0}}};
-  const PathMean mean = trace(planet, rays, {.environment = true, .ozone = false}, 64, 1)[0];
-  CAPTURE(mean.mean[0], mean.unfinished, mean.longest);
-  // Every path either came to its end or is counted: in a furnace each finished one brings back about 1.
-  if (mean.unfinished == 0.0)
-    CHECK(std::abs(mean.mean[0] - 1.0) < 4.0 * mean.error[0] + 1e-3);
-  else
-    CHECK(mean.mean[0] < 1.0);
+  const PathMean mean = trace(cloud(300.0), rays, {.environment = true, .ozone = false}, 64, 1)[0];
+  CAPTURE(mean.unfinished, mean.longest);
+  for (int c = 0; c < 3; ++c) {
+    CAPTURE(c, mean.mean[c], mean.error[c]);
+    // At most 3 for each that is missing: no less may have come back, whatever the driver.
+    const double lost = 3.0 * mean.unfinished / 64.0;
+    CHECK(mean.mean[c] + lost > 1.0 - 4.0 * mean.error[c] - 1e-3);
+    CHECK(mean.mean[c] < 1.0 + 4.0 * mean.error[c] + 1e-3);
+  }
   if (device().candidate().name.find("llvmpipe") != std::string::npos) CHECK(mean.unfinished > 0.0);
 }
 
@@ -137,22 +173,15 @@ TEST_CASE("hard: random and edge paths stay finite") {
 
 // The dense planet at dusk, low towards the sun: all of what is scattered once comes from air behind an optical depth
 // of twenty. Flights that get there are one in thousands: their mean is too low, and a standard error that has not seen
-// the rest denies it.
+// the rest denies it. How low it is depends on the few that got there: docs/generated/07_unfound.csv has what was seen.
 TEST_CASE("hard: light that no flight finds") {
-  PathRay ray;
-  double want = 0.0;
-  for (const OrdersRow& row : orders_rows("multiple_scattering_alien_cs.csv"))
-    if (row.channel == 2 && row.ray.ray.altitude_km < 0.001 && row.ray.ray.view[2] > 0.08 &&
-        row.ray.ray.view[2] < 0.09 && row.ray.ray.sun[2] > 0.03 && row.ray.ray.sun[2] < 0.04)
-      ray = row.ray, want = row.radiance[0];
-  REQUIRE(want > 0.0);
-  ray.orders = 1;
+  const UnfoundLight light = unfound_light();
   const reference::Planet planet = reference::dense_alien();
-  const PathMean flights = trace(planet, {ray}, {.spread = false}, 1024, 2)[0],
-                 both = trace(planet, {ray}, {}, 1024, 2)[0];
-  CAPTURE(want, flights.mean[2], flights.error[2], both.mean[2], both.error[2]);
-  CHECK(flights.mean[2] < 0.5 * want);                     // seen: 0.02
-  CHECK(flights.mean[2] + 5.0 * flights.error[2] < want);  // and it does not know
-  CHECK(std::abs(both.mean[2] - want) < 3.5 * both.error[2]);
-  CHECK(both.error[2] < 0.1 * want);
+  const PathMean flights = trace(planet, {light.ray}, {.spread = false}, 1024, 2)[0],
+                 both = trace(planet, {light.ray}, {}, 1024, 2)[0];
+  CAPTURE(light.want, flights.mean[2], flights.error[2], both.mean[2], both.error[2]);
+  CHECK(flights.mean[2] < 0.5 * light.want);
+  CHECK(flights.mean[2] + 5.0 * flights.error[2] < light.want);  // and it does not know
+  CHECK(std::abs(both.mean[2] - light.want) < 3.5 * both.error[2]);
+  CHECK(both.error[2] < 0.1 * light.want);
 }

@@ -1,5 +1,6 @@
-// Writes the table of errors on the page of chapter 08:
+// Write the tables of errors on the page of chapter 08:
 //   WELKIN_TABLE=docs/generated/08_errors.csv gpu_tests "[08_table]"
+//   WELKIN_TABLE=docs/generated/08_texels.csv gpu_tests "[08_texels]"
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
@@ -12,30 +13,58 @@
 using namespace welkin;
 using namespace welkin::test;
 
+namespace {
+
+const char* file() {
+  const char* name = std::getenv("WELKIN_TABLE");
+  REQUIRE(name != nullptr);
+  return name;
+}
+
+// The errors of a table with these choices: Earth's rows, Earth's random paths, the dense planet's, its random paths.
+std::vector<std::string> errors(const Choices& choices, Sampler sampler = Sampler::device) {
+  static const std::vector<TruePath> truth[4]{path_rows("transmittance_earth.csv"), random_paths(reference::earth(), 8, 4000),
+                                              path_rows("transmittance_alien.csv"), random_paths(reference::dense_alien(), 8, 4000)};
+  std::vector<std::string> row;
+  for (int i = 0; i < 4; ++i) row.push_back(fmt::format("{:.2g}", worst_error(i < 2 ? "earth" : "alien", choices, truth[i], sampler)));
+  return row;
+}
+
+void write(const std::string& what, const std::string& tag, const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows) {
+  write_csv(file(),
+            {"largest relative error of transmittances above 1e-4: on the rows of tests/data/transmittance_*.csv and on 4000 random paths; " + what,
+             "device: " + device().candidate().name, "driver: " + device().candidate().driver,
+             fmt::format("source: WELKIN_TABLE=docs/generated/08_{}.csv gpu_tests \"[08_{}]\"", tag == "table" ? "errors" : tag, tag)},
+            header, rows);
+}
+
+}  // namespace
+
 TEST_CASE("table of errors of the transmittance table", "[.][08_table]") {
-  const char* file = std::getenv("WELKIN_TABLE");
-  REQUIRE(file != nullptr);
-  std::vector<TruePath> truth[4];
-  for (int planet = 0; planet < 2; ++planet) {
-    truth[2 * planet] = path_rows(planet == 0 ? "transmittance_earth.csv" : "transmittance_alien.csv");
-    truth[2 * planet + 1] = random_paths(planet == 0 ? reference::earth() : reference::dense_alien(), 8, 4000);
-  }
   std::vector<std::vector<std::string>> rows;
   for (const char* mapping : {"published", "folded"})
     for (const char* stored : {"transmittance", "optical_depth", "mean_extinction"})
       for (const char* format : {"half", "float"})
         for (const auto& [width, height] : {std::pair{"256", "64"}, {"128", "128"}, {"256", "256"}, {"128", "512"}, {"256", "512"}}) {
           std::vector<std::string> row{mapping, stored, format, fmt::format("{} × {}", width, height)};
-          for (int i = 0; i < 4; ++i)
-            row.push_back(fmt::format("{:.2g}", worst_error(i < 2 ? "earth" : "alien",
-                                                            {{"transmittance.mapping", mapping}, {"transmittance.stored", stored}, {"transmittance.format", format},
-                                                             {"transmittance.width", width}, {"transmittance.height", height}},
-                                                            truth[i])));
+          const std::vector<std::string> numbers = errors({{"transmittance.mapping", mapping}, {"transmittance.stored", stored}, {"transmittance.format", format},
+                                                           {"transmittance.width", width}, {"transmittance.height", height}});
+          row.insert(row.end(), numbers.begin(), numbers.end());
           rows.push_back(row);
         }
-  write_csv(file,
-            {"largest relative error of transmittances above 1e-4: on the rows of tests/data/transmittance_*.csv and on 4000 random paths; texels by chapter 05's closed form",
-             "device: " + device().candidate().name, "driver: " + device().candidate().driver,
-             "source: WELKIN_TABLE=docs/generated/08_errors.csv gpu_tests \"[08_table]\""},
-            {"mapping", "stored", "format", "size", "earth", "earth_random", "alien", "alien_random"}, rows);
+  write("texels by chapter 05's closed form", "table", {"mapping", "stored", "format", "size", "earth", "earth_random", "alien", "alien_random"}, rows);
+}
+
+TEST_CASE("table of errors by how texels are filled and read", "[.][08_texels]") {
+  std::vector<std::vector<std::string>> rows;
+  const auto add = [&](const char* filled, const char* read, const char* steps, Sampler sampler) {
+    std::vector<std::string> row{filled, read};
+    const std::vector<std::string> numbers = errors({{"transmittance.steps", steps}}, sampler);
+    row.insert(row.end(), numbers.begin(), numbers.end());
+    rows.push_back(row);
+  };
+  add("closed form", "the device's", "0", Sampler::device);
+  add("closed form", "rounded to 1/256", "0", Sampler::coarse);
+  for (const char* points : {"8", "16", "32", "64"}) add((std::string(points) + " points").c_str(), "the device's", points, Sampler::device);
+  write("the default table otherwise", "texels", {"texels_by", "weights", "earth", "earth_random", "alien", "alien_random"}, rows);
 }

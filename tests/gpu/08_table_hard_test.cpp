@@ -59,6 +59,9 @@ TEST_CASE("hard: texel maps that are not inverse of each other") {
   }
 }
 
+// Half a metre is one step of r in float32, 2^-11 km: that alone puts the naive distance off by 1.2 %, and where the
+// driver fuses r*r - R*R into one rounding (NVIDIA's does) nothing is added. Where both products are rounded, r*r is a
+// multiple of 4 km^2, and r^2 - R^2, 6.4, comes out as 8: 12 %.
 TEST_CASE("hard: the horizon's distance from half a metre, as the root of r^2 - R^2") {
   std::vector<std::pair<float, float>> altitudes;
   for (double h : {0.0005, 0.002, 0.01, 0.1, 1.0, 100.0}) altitudes.push_back({float(h), 0.0f});
@@ -71,7 +74,7 @@ TEST_CASE("hard: the horizon's distance from half a metre, as the root of r^2 - 
   }
   CAPTURE(holds, naive);
   CHECK(holds < 3e-7);
-  CHECK(naive > 0.1);  // 12 % at half a metre
+  CHECK((naive == Approx(0.01179).epsilon(1e-2) || naive == Approx(0.1215).epsilon(1e-2)));
 }
 
 // The ray that grazes: from half a metre, and from 1 m to 99 km, down to where its lowest point is 1 cm above the ground.

@@ -82,13 +82,22 @@ TEST_CASE("truth: the published table misses, and each step towards the default 
   CHECK(mean < 1e-3);
 }
 
-// 16 bits have 11 digits: an optical depth of 9 is known to 2e-3, and a folded path takes twice one less another.
+// 16 bits have 11 binary digits. A driver may store a number rounded to the nearest or towards zero, and may return what
+// it filters as 16 bits, too. Then a look-up errs, in units of 2^-10 of itself, by -1.5 to +0.5: storing by -1 to 0,
+// filtering by 1/2 either way (below 2^-14 in units of 2^-24, absolutely). An upward path's optical depth tau errs by as
+// much. One that dips is 2 tau_1 - tau_2: by 1.5 (2 tau_1) + 0.5 tau_2 = 1.5 tau + 2 tau_2 at most, and tau_2, what lies
+// beyond the path's start, is part of tau: 3.5 tau. (The absolute part: 4.5 times the longest path.) The table itself
+// errs by 1e-3. Seen: 0.8 % on lavapipe, which stores towards zero and filters in 32 bits; 1.2 % and 1.6 % on NVIDIA's
+// driver, which stores towards zero and filters in 16: imitated in the shaders on lavapipe, that gives the same digits.
 TEST_CASE("truth: sixteen bits are not enough for 1e-3") {
   const bool alien = GENERATE(false, true);
   const double half = worst_error(scene(alien), {{"transmittance.format", "half"}}, fresh(alien));
-  CAPTURE(alien, half);
+  const reference::Planet planet = alien ? reference::dense_alien() : reference::earth();
+  const double longest_km = std::sqrt((planet.top_radius_km - planet.ground_radius_km) * (planet.top_radius_km + planet.ground_radius_km));
+  const double bound = std::expm1(3.5 * -std::log(1e-4) * 0x1p-10 + 4.5 * longest_km * 0x1p-24) + 1e-3;  // 1e-4: the least that is scored
+  CAPTURE(alien, half, bound);
   CHECK(half > 1e-3);
-  CHECK(half < 0.012);  // seen: 0.8 %
+  CHECK(half < bound);
 }
 
 TEST_CASE("truth: texels by Gauss-Legendre converge to the closed form") {

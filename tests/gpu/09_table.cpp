@@ -34,13 +34,20 @@ TEST_CASE("table of errors of the methods", "[.][09_table]") {
   const std::string prefix = "multiple_scattering.";
   const std::vector<std::pair<std::string, Choices>> variants{
       {"single scattering only", {{"orders", "1"}}},
-      {"published (64 Fibonacci directions; even map)", {{prefix + "method", "published"}, {prefix + "set", "fibonacci"}, {prefix + "map", "published"}}},
-      {"isotropic (10 orders gathered)", {{prefix + "method", "isotropic"}}},
-      {"moments (3 orders gathered)", {{prefix + "iterations", "3"}}},
-      {"moments (10 orders gathered: the default)", {}},
-      {"… 20 orders", {{prefix + "iterations", "20"}}},
-      {"… 64 Fibonacci directions", {{prefix + "set", "fibonacci"}}},
-      {"… 256 directions", {{prefix + "directions", "256"}}},
+      {"published (64 Fibonacci directions; even map)", {{prefix + "method", "published"}, {prefix + "directions", "64"}, {prefix + "map", "published"}}},
+      {"isotropic (as many orders as the air asks for)", {{prefix + "method", "isotropic"}}},
+      {"moments (as many orders as the air asks for: the default)", {}},
+      {"… 3 orders", {{prefix + "iterations", "3"}}},
+      {"… 10 orders", {{prefix + "iterations", "10"}}},
+      {"… 40 orders", {{prefix + "iterations", "40"}}},
+      {"… 4 samples along a direction", {{prefix + "steps", "4"}}},
+      {"… 16 samples along a direction", {{prefix + "steps", "16"}}},
+      {"… 16 directions", {{prefix + "directions", "16"}}},
+      {"… 64 directions", {{prefix + "directions", "64"}}},
+      {"… 32 directions of the set horizon", {{prefix + "set", "horizon"}}},
+      {"… 64 directions of the set horizon", {{prefix + "set", "horizon"}, {prefix + "directions", "64"}}},
+      {"… 256 directions and 32 samples", {{prefix + "directions", "256"}, {prefix + "steps", "32"}}},
+      {"… 64 texels a side", {{prefix + "size", "64"}}},
       {"… 8 samples along the view", {{prefix + "view_steps", "8"}}}};
   std::vector<std::vector<std::string>> lines;
   std::vector<Table> all = tables();  // over one ground: every other is another table to gather
@@ -68,7 +75,7 @@ TEST_CASE("map of errors over altitude and sun", "[.][09_map]") {
   std::vector<std::vector<std::string>> lines;
   for (const Table& table : tables()) {
     std::map<std::pair<double, double>, std::array<std::vector<double>, 2>> cells;
-    const Choices published{{"multiple_scattering.method", "published"}, {"multiple_scattering.set", "fibonacci"}, {"multiple_scattering.map", "published"}};
+    const Choices published{{"multiple_scattering.method", "published"}, {"multiple_scattering.directions", "64"}, {"multiple_scattering.map", "published"}};
     for (int method = 0; method < 2; ++method) {
       const std::vector<double> got = sky_of_rows(table.scene, Phase::cornette_shanks, method == 0 ? published : Choices{}, table.rows);
       for (size_t i = 0; i < got.size(); ++i) {

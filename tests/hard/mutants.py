@@ -1,15 +1,18 @@
 """Evidence that the tests see: each mutant is one wrong constant, sign or term in one shader, and a named test must fail
 with it and pass without it.
 
-mutants.py NN [--write FILE] [NAME …]     needs the built tests (WELKIN_BUILD) and glslangValidator
+mutants.py NN [--tested] [--write FILE] [NAME …]     needs the built tests (WELKIN_BUILD) and glslangValidator
 
 The mutants of a chapter are in mutants/NN.py. For each the shaders are copied, one text is replaced (which must be there
-exactly once), every program that includes the file is compiled from the copy beside the healthy others, and gpu_tests runs
-with WELKIN_SHADERS pointing at them. Nothing in the tree or in the build is touched.
+exactly once), every program up to that chapter that includes the file is compiled from the copy beside the healthy others
+(later chapters' are not: they are many, and a mutant whose test needed one would be seen to escape), and
+gpu_tests runs with WELKIN_SHADERS pointing at them. Nothing in the tree or in the build is touched.
+--tested: gpu_tests runs beside this and says whether the tests pass without a mutant; they are not run for that again.
 Exit codes: 0 all caught, 1 one escaped, 2 a mutant no longer fits the source, 77 no Vulkan device.
 """
 import argparse
 import os
+import re
 import runpy
 import shutil
 import subprocess
@@ -31,12 +34,13 @@ def programs():
     return found
 
 
-def compile_programs(found, mutated, shaders, output):
-    """The build's programs under `output`, those that include the mutated file compiled from the copy."""
+def compile_programs(found, mutated, chapter, shaders, output):
+    """The build's programs under `output`, those up to the chapter that include the mutated file compiled from the copy."""
     for spirv, sources in found:
         target = output / spirv
         target.parent.mkdir(parents=True, exist_ok=True)
-        if mutated is None or (ROOT / "shaders" / mutated).resolve() not in sources:
+        number = re.search(r"(?:^|/)(\d\d)_", spirv.as_posix())
+        if mutated is None or number and number[1] > chapter or (ROOT / "shaders" / mutated).resolve() not in sources:
             target.symlink_to(BUILD / "shaders" / spirv)
             continue
         source = sources[0]
@@ -62,6 +66,7 @@ def run_test(name, spirv):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--write", metavar="FILE", help="also write the table there")
+    parser.add_argument("--tested", action="store_true", help="take the tests to pass without a mutant")
     parser.add_argument("chapter", help="two digits")
     parser.add_argument("names", nargs="*", help="only mutants whose name contains one of these")
     arguments = parser.parse_args()
@@ -75,9 +80,9 @@ def main():
     with tempfile.TemporaryDirectory(prefix="welkin-mutants-") as directory:
         work = Path(directory)
         shutil.copytree(ROOT / "shaders", work / "shaders")
-        compile_programs(found, None, work / "shaders", work / "healthy")
-        healthy = {}
-        for test in dict.fromkeys(m[4] for m in chosen):
+        compile_programs(found, None, arguments.chapter, work / "shaders", work / "healthy")
+        healthy = dict.fromkeys((m[4] for m in chosen), True)
+        for test in () if arguments.tested else healthy:
             broken, output = run_test(test, work / "healthy")
             healthy[test] = not broken
             if broken:
@@ -90,7 +95,7 @@ def main():
                 verdict, stale = f"STALE: the text is there {source.count(text)} times", stale + 1
             else:
                 path.write_text(source.replace(text, replacement), encoding="utf-8")
-                message = compile_programs(found, file, work / "shaders", work / f"mutant{number}")
+                message = compile_programs(found, file, arguments.chapter, work / "shaders", work / f"mutant{number}")
                 path.write_text(source, encoding="utf-8")
                 if message:
                     verdict, stale = "STALE: does not compile: " + message.strip().splitlines()[-1], stale + 1

@@ -131,6 +131,17 @@ TEST_CASE("a sweep's table has its columns, its source and no hidden NaN", "[rep
                     Contains(":11:") && Contains("'nan' is not a finite number"));
 }
 
+TEST_CASE("a pass that a setting leaves out took 0 ms", "[report]") {
+  const TemporaryDirectory dir;
+  SweepRow without{{"8", "0.8", "left"}, "east", {1.5, 1, 2, 5}, {3, 2, 4, 5}, {{"sky", 1.25}}, 4096, {}};
+  SweepRow with = without;
+  with.passes = {{"table", 0.5}, {"sky", 1.5}};
+  write_sweep_csv(dir / "s.csv", knobs().knobs(), {without, with}, {});
+  const CsvTable table = read_csv(dir / "s.csv", {"pass_ms:sky", "pass_ms:table"}, {"view", "knob:rule"});
+  CHECK(table.column("pass_ms:sky") == std::vector<double>{1.25, 1.5});
+  CHECK(table.column("pass_ms:table") == std::vector<double>{0.0, 0.5});
+}
+
 TEST_CASE("the colour scale's luminance rises throughout", "[report]") {
   double last = -1.0;
   for (int i = 0; i <= 100; ++i) {

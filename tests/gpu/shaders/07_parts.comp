@@ -10,6 +10,7 @@ layout(constant_id = 4) const int TRACKING = 3;
 const bool HERO = true;
 const bool ENVIRONMENT = false;
 const bool SPREAD = true;
+const bool SURFACES = false;
 #include "07_ground_truth/accumulate.glsl"
 #include "07_ground_truth/path.glsl"
 
@@ -54,11 +55,10 @@ void main() {
   }
   if (what == 2) {  // scattering turn: 0 rayleigh, 1 mie; u, u; g, second g, shape
     const Atmosphere air = earth(b.x, b.y, b.z);
-    const Turn turn = a.x < 0.5 ? rayleigh_turn(a.y, a.z) : mie_turn(air, a.y, a.z);
+    const Turn turn = a.x < 0.5 ? rayleigh_turn(a.y, a.z) : kept_mie_turn(air, a.y, a.z, random_stream(item, 0u, 1u)).turn;
     const vec3 axis = normalize(vec3(a.w, 0.3, 0.6 - a.w));
     const vec3 to = turned(axis, turn, a.z);
     low = vec4(turn.one_minus_nu, turn.one_plus_nu, one_minus_cosine(axis, to), length(to));
-    high = vec4(mie_turn_density(air, turn), mie_phase(air, turn.one_minus_nu, turn.one_plus_nu), 0.0, 0.0);
   }
   if (what == 3) {  // majorant against density: altitude, zenith cosine, scale height, share of the length
     const float sine = sqrt((1.0 - a.y) * (1.0 + a.y));

@@ -59,9 +59,20 @@ void main() {
     const int directions = int(a[2]);
     for (int n = 0; n < directions; ++n) {
       const WeightedDirection direction = direction_of_set(int(a[3]), n, directions, horizon_cosine(air.shape.x, a[0]));
-      const Transfer one = published_transfer(air, a[0], direction.look, sun_at(a[1]), int(a[4]));
-      second += one.second * direction.weight;
-      transfer += one.transfer * direction.weight;
+      const vec3 sun = sun_at(a[1]);
+      const float nu = dot(direction.look, sun);
+      const SourceRay along = source_ray(air, enter_air(air, a[0], direction.look, sun));
+      vec3 light = sun_at_end(air, ray_end(air, along), a[1], nu), share = vec3(0.0);
+      const int panels = int(a[4]) / 4;
+      for (int panel = 0; panel < panels; ++panel) {
+        const NodePanel placed = panel_nodes(air, along, panel, panels);
+        for (int i = 0; i < 4; ++i) {
+          light += sun_at_node(air, placed.node[i], beam_phases(vec2(0.0), nu), a[1], nu);
+          share += transfer_at_node(placed.node[i]);
+        }
+      }
+      second += light * direction.weight;
+      transfer += share * direction.weight;
     }
     const vec3 psi = close_series(second, transfer);
     result[0] = vec4(second, transfer.x);
@@ -71,7 +82,11 @@ void main() {
     const AirRay ray = enter_air(air, a[0], vec3(sqrt(max(1.0 - a[1] * a[1], 0.0)), 0.0, a[1]), vec3(0.0, 0.0, 1.0));
     if (ray.hits_air) {
       const SourceRay along = source_ray(air, ray);
-      result[0].xyz = source_march(air, along, int(a[2]), vec2(0.0), kSourceUnit);
+      const int panels = int(a[2]) / 4;
+      for (int panel = 0; panel < panels; ++panel) {
+        const NodePanel placed = panel_nodes(air, along, panel, panels);
+        for (int i = 0; i < 4; ++i) result[0].xyz += transfer_at_node(placed.node[i]);
+      }
       result[1].xyz = ray_transmittance(air, along);
     } else {
       result[1].xyz = vec3(1.0);

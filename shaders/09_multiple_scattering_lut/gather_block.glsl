@@ -1,0 +1,25 @@
+// What the entry points that gather light share: how many directions and nodes, the nodes themselves, and the point a texel
+// stands for.
+#ifndef WELKIN_GATHER_BLOCK_GLSL
+#define WELKIN_GATHER_BLOCK_GLSL
+
+layout(constant_id = 7) const int DIRECTIONS = 32;
+layout(constant_id = 8) const int DIRECTION_SET = 0;
+layout(constant_id = 9) const int STEPS = 16;  // nodes of a ray
+
+#ifdef NODES_ARE_WRITTEN
+layout(binding = 4, std430) writeonly buffer Nodes {
+#else
+layout(binding = 4, std430) readonly buffer Nodes {
+#endif
+  RayNode nodes[];  // altitude by altitude, zenith angle by zenith angle: a ray's STEPS nodes, then its end
+};
+
+int first_node_of(int row, int direction) {
+  return (row * elevations_of_set(DIRECTION_SET, DIRECTIONS) + elevation_of(DIRECTION_SET, direction, DIRECTIONS)) * (STEPS + 1);
+}
+
+// x: sun's zenith cosine, y: altitude.
+vec2 texel_point(ivec2 texel) { return table_point(MS_MAP, atmosphere.shape.y, table_unit_of_texel(vec2(texel), float(MS_SIZE))); }
+
+#endif
