@@ -1,4 +1,4 @@
-// Chapter 10, sky view table: the sky seen from where the camera is, computed at a few thousand directions and looked up
+// Chapter 10, sky view table: the sky seen from where the camera is, computed at some twenty thousand directions and looked up
 // for every pixel; and the direct march where a table of one altitude cannot show the planet.
 #include "chapters/02_window/window.hpp"
 #include "chapters/06_display/auto_display.hpp"

@@ -5,7 +5,7 @@
 
 layout(constant_id = 7) const int DIRECTIONS = 32;
 layout(constant_id = 8) const int DIRECTION_SET = 0;
-layout(constant_id = 9) const int STEPS = 16;  // nodes of a ray
+layout(constant_id = 9) const int STEPS = 8;  // nodes of a ray
 
 #ifdef NODES_ARE_WRITTEN
 layout(binding = 4, std430) writeonly buffer Nodes {

@@ -3,7 +3,7 @@
 // L(d) is the radiance seen when looking along d. Its moments: the mean J = (1/4pi) int L, the flux F_i = int L d_i, the
 // tensor K_ij = int L d_i d_j. A phase function P = (1/4pi) sum (2l+1) chi_l P_l sends towards an eye that looks along v
 //   int L(d) P(d.v) dd = J [ 1 + 3 chi_1 f.v + 5 chi_2 (3/2 v.k.v - 1/2) + ... ],     f = F/(4 pi J), k = K/(4 pi J)
-// Rayleigh's has chi_1 = 0, chi_2 = 1/10 and nothing more: for it the three lines are exact.
+// Rayleigh's has chi_1 = 0, chi_2 = 1/10 and nothing more: for it the three terms are exact.
 #ifndef WELKIN_MOMENTS_GLSL
 #define WELKIN_MOMENTS_GLSL
 

@@ -2,7 +2,7 @@
 //
 // The including file defines, before this one: const int MS_METHOD (kMethod… below), MS_MAP (kMap…), MS_SIZE (texels a
 // side), and vec3 read_multiple_scattering_table(vec2 uv), which filters what the table stores.
-// x: sun's zenith cosine. y: altitude; the layers stand above each other, MS_LAYERS of them.
+// x: sun's zenith cosine. y: altitude; the layers stand above each other, table_layers() of them.
 #ifndef WELKIN_MULTIPLE_SCATTERING_TABLE_GLSL
 #define WELKIN_MULTIPLE_SCATTERING_TABLE_GLSL
 

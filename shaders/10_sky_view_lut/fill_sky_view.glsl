@@ -1,4 +1,4 @@
-// Fills the sky view table: one direct march of chapter 09 per texel, for the camera's altitude and the sun's height. The
+// Fills the sky view table: chapter 09's two marches per texel, for the camera's altitude and the sun's height. The
 // including entry point declares the image, writeonly and named `sky_view`, and SKY_VIEW_UNIT: what a stored 1 is worth;
 // with SINGLE_ORDER defined the march is chapter 05's, and there is no scattering table.
 #ifndef WELKIN_FILL_SKY_VIEW_GLSL
