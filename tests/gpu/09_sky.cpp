@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "chapters/07_ground_truth/ground_truth.hpp"
 #include "chapters/09_multiple_scattering_lut/all_orders_sky.hpp"
 #include "common/app/session.hpp"
 #include "common/image/csv.hpp"
@@ -104,6 +105,21 @@ std::vector<TableTexel> table_of(const Scene& scene, const Choices& choices) {
       texels.push_back(texel);
     }
   return texels;
+}
+
+std::vector<Aureole> aureole(const std::string& name, const std::string& paths) {
+  const Scene scene = orders_scene(name);
+  const std::vector<double> angles_deg{1.0, 2.0, 5.0, 10.0, 20.0, 40.0};
+  std::vector<app::ProbeRay> rays;
+  for (const double angle : angles_deg) rays.push_back({0.0005, 45.0 - angle, 45.0, 0.0});
+  Settings settings(path_knobs());
+  settings.set("probe.samples", paths);
+  const std::string no_fault;
+  const std::vector<app::ProbeResult> truth = GroundTruth({device(), scene, settings, no_fault}).probe(rays), got = sky_of(scene, {}, rays);
+  std::vector<Aureole> all;
+  for (size_t i = 0; i < rays.size(); ++i)
+    all.push_back({angles_deg[i], got[i].radiance / truth[i].radiance - 1.0, truth[i].standard_error / truth[i].radiance});
+  return all;
 }
 
 double OrderErrors::quantile(double share) const {

@@ -52,4 +52,12 @@ struct OrderErrors {
 enum class Rows { all, target };  // target: sun above -4 degrees and not within 0.5 degrees of the horizon
 OrderErrors errors_of(const std::vector<OrderRow>& rows, const std::vector<double>& got, Rows which);
 
+// Relative errors of the sky above a sun 45 degrees high, 1 to 40 degrees from it, against so many of chapter 07's paths, and
+// one standard error of theirs.
+struct Aureole {
+  double angle_deg;
+  glm::dvec3 error, noise;
+};
+std::vector<Aureole> aureole(const std::string& scene, const std::string& paths);
+
 }  // namespace welkin::test

@@ -1,6 +1,7 @@
 // Writes the tables of errors on the page of chapter 09:
 //   WELKIN_TABLE=docs/generated/09_errors.csv gpu_tests "[09_table]"
 //   WELKIN_TABLE=docs/generated/09_error_map.csv gpu_tests "[09_map]"
+//   WELKIN_TABLE=docs/generated/09_aureole.csv gpu_tests "[09_aureole]"
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -98,4 +99,21 @@ TEST_CASE("map of errors over altitude and sun", "[.][09_map]") {
              "device: " + device().candidate().name, "source: WELKIN_TABLE=docs/generated/09_error_map.csv gpu_tests \"[09_map]\""},
             {"planet", "altitude_km", "sun_zenith_deg", "rows", "published_median_percent", "published_worst_percent", "moments_median_percent", "moments_worst_percent"},
             lines);
+}
+
+TEST_CASE("table of the aureole", "[.][09_aureole]") {
+  const char* file = std::getenv("WELKIN_TABLE");
+  REQUIRE(file != nullptr);
+  std::vector<std::vector<std::string>> lines;
+  for (const char* name : {"earth", "alien"})
+    for (const Aureole& one : aureole(name, "524288")) {
+      std::vector<std::string> line{name, fmt::format("{:g}", one.angle_deg)};
+      for (int c = 0; c < 3; ++c) line.push_back(fmt::format("{:.2g}", 100.0 * one.error[c]));
+      line.push_back(fmt::format("{:.1g}", 100.0 * std::fmax(one.noise[0], std::fmax(one.noise[1], one.noise[2]))));
+      lines.push_back(line);
+    }
+  write_csv(file,
+            {"error of chapter 09 above a sun 45 degrees high, against chapter 07's paths, in percent; noise: one standard error of the worst channel",
+             "device: " + device().candidate().name, "source: WELKIN_TABLE=docs/generated/09_aureole.csv gpu_tests \"[09_aureole]\""},
+            {"planet", "angle_deg", "red_percent", "green_percent", "blue_percent", "noise_percent"}, lines);
 }
