@@ -204,6 +204,7 @@ TEST_CASE("truth: pictures with terrain against paths that end on it") {
 
 TEST_CASE("table of paths that end on terrain", "[.][11_paths_table]") {
   const char* const file = std::getenv("WELKIN_TABLE");
+  if (file == nullptr) return;  // run with this file's tests: there is nothing to write
   std::vector<std::vector<std::string>> rows;
   for (const auto& [scene, view] : {std::pair{"noon", "horizon"},
                                     {"noon", "airliner"},
