@@ -166,7 +166,7 @@ struct Loop {
 // Path-traces the present view, small, and says how far the method is from it: and how far two such truths are from each
 // other, because noise is not error. Without the sun's disc, whose few pixels would be all a mean of squares sees.
 std::string Loop::error_of_what_is_shown() const {
-  if (!session.chapter.truth) return "this chapter has no path tracer to be measured against; 09 and 10 have";
+  if (!session.chapter.truth) return "this chapter has no path tracer to be measured against; those from 09 on have";
   constexpr VkExtent2D kSize{48, 27};
   Scene scene = session.scene;
   scene.sun.disc = false;

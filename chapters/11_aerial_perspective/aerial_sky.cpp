@@ -13,21 +13,6 @@ namespace {
 
 constexpr VkDescriptorType kSampled = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
 constexpr VkDescriptorType kImage = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
-constexpr double kEyes_km = 0.002;  // a camera in a hill is lifted to this height above it
-
-// The camera of a frame, lifted out of the ground. Straight up: directions stay what they are.
-struct Lifted {
-  CameraRays camera;
-  glm::dvec3 position_km;
-};
-Lifted lifted(const app::Frame& frame, const TerrainMap& map, double ground_radius_km) {
-  const Standpoint at = standpoint(frame, ground_radius_km);
-  const double ground_km = height_at(map, at.up.x * ground_radius_km, at.up.y * ground_radius_km);
-  const double altitude_km = std::max(at.altitude_km, ground_km > 0.0 ? ground_km + kEyes_km : 0.0);
-  Lifted result{frame.camera, at.position_km + at.up * (altitude_km - at.altitude_km)};
-  if (altitude_km > at.altitude_km) result.camera.right.w = static_cast<float>(altitude_km), result.camera.up.w = static_cast<float>(altitude_km * 1000.0);
-  return result;
-}
 
 }  // namespace
 

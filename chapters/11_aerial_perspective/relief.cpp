@@ -268,4 +268,14 @@ void Relief::make_mesh_pipeline(int cells) {
 }
 // [/mesh_pipeline]
 
+Lifted lifted(const app::Frame& frame, const TerrainMap& map, double ground_radius_km) {
+  constexpr double kEyes_km = 0.002;  // a camera in a hill is lifted to this height above it
+  const Standpoint at = standpoint(frame, ground_radius_km);
+  const double ground_km = height_at(map, at.up.x * ground_radius_km, at.up.y * ground_radius_km);
+  const double altitude_km = std::max(at.altitude_km, ground_km > 0.0 ? ground_km + kEyes_km : 0.0);
+  Lifted result{frame.camera, at.position_km + at.up * (altitude_km - at.altitude_km)};
+  if (altitude_km > at.altitude_km) result.camera.right.w = static_cast<float>(altitude_km), result.camera.up.w = static_cast<float>(altitude_km * 1000.0);
+  return result;
+}
+
 }  // namespace welkin

@@ -78,4 +78,11 @@ class Relief {
   gpu::ComputePipeline shadow_pipeline_;
 };
 
+// The camera of a frame, lifted out of the ground. Straight up: directions stay what they are.
+struct Lifted {
+  CameraRays camera;
+  glm::dvec3 position_km;
+};
+Lifted lifted(const app::Frame& frame, const TerrainMap& map, double ground_radius_km);
+
 }  // namespace welkin

@@ -19,22 +19,6 @@ struct SurfacesPush {
   glm::vec4 position, east, north;
 };
 
-// The camera of a frame as chapter 11 sees it: lifted out of the ground, to 2 m above it.
-struct Eye {
-  CameraRays camera;
-  glm::dvec3 position_km;
-};
-Eye eye_of(const app::Frame& frame, const TerrainMap& map, double ground_radius_km) {
-  constexpr double kEyes_km = 0.002;
-  const Standpoint at = standpoint(frame, ground_radius_km);
-  const double ground_km = height_at(map, at.up.x * ground_radius_km, at.up.y * ground_radius_km);
-  const double altitude_km = ground_km > 0.0 ? std::max(at.altitude_km, ground_km + kEyes_km) : at.altitude_km;
-  Eye eye{frame.camera, at.position_km + at.up * (altitude_km - at.altitude_km)};
-  if (altitude_km > at.altitude_km)
-    eye.camera.right.w = static_cast<float>(altitude_km), eye.camera.up.w = static_cast<float>(altitude_km * 1000.0);
-  return eye;
-}
-
 class TerrainTruth : public app::Program {
  public:
   explicit TerrainTruth(const app::Context& context)
@@ -63,7 +47,7 @@ class TerrainTruth : public app::Program {
   }
 
   void draw(const app::Frame& frame) override {
-    const Eye eye = eye_of(frame, relief_.map(), context_.scene.planet.ground_radius_km);
+    const Lifted eye = lifted(frame, relief_.map(), context_.scene.planet.ground_radius_km);
     const app::Frame seen{frame.commands, frame.target, eye.camera,    frame.timer,
                           frame.index,    frame.seed,   frame.seconds, eye.position_km};
     graph_.execute(seen);

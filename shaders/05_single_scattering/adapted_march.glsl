@@ -21,6 +21,13 @@ const vec4 kGauss4UpTo[4] = {
 // [/gauss4_up_to]
 
 // [panel]
+// Columns (rayleigh, mie) from a panel's begin to its node i, from the densities at its four nodes. A panel over many scale
+// heights defeats the polynomial, which then dips below zero and would let light through: `floor_of`, half of what the
+// weights alone say, is what a resolved panel never reaches.
+vec2 column_inside(vec4 rayleigh, vec4 mie, int i, vec2 floor_of) {
+  return max(vec2(dot(rayleigh, kGauss4UpTo[i]), dot(mie, kGauss4UpTo[i])), floor_of);
+}
+
 // One panel of four Gauss nodes over counts [x_a, x_b]. Columns up to each node come from the panel's own densities, by
 // the integrals of their interpolating polynomial, so that the whole panel has one order. The nodes are the components
 // of a vec4, not elements of an array: registers, not memory.
@@ -47,10 +54,7 @@ Stretch march_panel(Atmosphere atmosphere, AirRay ray, Line line, ScaleCount cou
   float passed_width = 0.0;
   for (int i = 0; i < 4; i++) {
     vec2 air = vec2(rayleigh[i], mie[i]);
-    vec2 inside = vec2(dot(rayleigh, kGauss4UpTo[i]), dot(mie, kGauss4UpTo[i]));
-    // A panel over many scale heights defeats the polynomial, which then dips below zero and would let light through:
-    // half of what the weights alone say is a floor that a resolved panel never reaches.
-    inside = max(inside, (passed + air * (kGauss4Node[i] - passed_width)) * 0.5);
+    vec2 inside = column_inside(rayleigh, mie, i, (passed + air * (kGauss4Node[i] - passed_width)) * 0.5);
     passed += air * kGauss4Weight[i];
     passed_width += kGauss4Weight[i];
     vec3 column = vec3(before.column.x + inside.x, before.column.y + inside.y, ozone[i] - before.column.z);

@@ -113,8 +113,7 @@ NodePanel panel_nodes(Atmosphere atmosphere, SourceRay along, int panel, int pan
   float passed_width = 0.0;
   for (int i = 0; i < 4; i++) {
     vec2 air = vec2(rayleigh[i], mie[i]);
-    vec2 inside = vec2(dot(rayleigh, kGauss4UpTo[i]), dot(mie, kGauss4UpTo[i]));
-    inside = max(inside, (passed + air * (kGauss4Node[i] - passed_width)) * 0.5);
+    vec2 inside = column_inside(rayleigh, mie, i, (passed + air * (kGauss4Node[i] - passed_width)) * 0.5);
     passed += air * kGauss4Weight[i];
     passed_width += kGauss4Weight[i];
     vec3 column = vec3(before.x + inside.x, before.y + inside.y, ozone[i] - ozone_begin);
