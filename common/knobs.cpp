@@ -43,7 +43,8 @@ size_t Settings::index(std::string_view name) const {
     if (knobs_[i].name == name) return i;
   std::vector<std::string> names;
   for (const Knob& knob : knobs_) names.push_back(knob.name);
-  fail("unknown knob '{}': this chapter has {}", name, names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", ")));
+  fail("unknown knob '{}': this chapter has {}", name,
+       names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", ")));
 }
 
 const Knob& Settings::knob(std::string_view name) const { return knobs_[index(name)]; }

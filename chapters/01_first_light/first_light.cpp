@@ -28,8 +28,9 @@ void FirstLight::set_target(const gpu::Image& target) {
 
 // [draw]
 void FirstLight::draw(const app::Frame& frame) {
-  // The image's old content is of no use, so its layout before may be UNDEFINED. But the display pass of an earlier frame
-  // may still be reading it: its stage stands on the "before" side, and our write on the "after" side waits for it.
+  // The image's old content is of no use, so its layout before may be UNDEFINED. But the display pass of an earlier
+  // frame may still be reading it: its stage stands on the "before" side, and our write on the "after" side waits for
+  // it.
   constexpr gpu::Use earlier_read{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT};
   gpu::image_barrier(frame.commands, frame.target.handle, earlier_read, gpu::kComputeWrite);
 

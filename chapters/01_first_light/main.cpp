@@ -6,15 +6,14 @@ using namespace welkin;
 
 int main(int argc, char** argv) {
   // [chapter]
-  const app::Chapter chapter{
-      .number = 1,
-      .name = "01_first_light",
-      .title = "First light",
-      .whats_new = "A compute shader writes an image; the image comes back and becomes a file.",
-      .try_next = "./welkin run 02   (the same image in a window)",
-      .display = app::Display::raw,
-      .standard_views = {{"noon", "horizon"}},
-      .make = [](const app::Context& context) { return std::make_unique<FirstLight>(context); }};
+  const app::Chapter chapter{.number = 1,
+                             .name = "01_first_light",
+                             .title = "First light",
+                             .whats_new = "A compute shader writes an image; the image comes back and becomes a file.",
+                             .try_next = "./welkin run 02   (the same image in a window)",
+                             .display = app::Display::raw,
+                             .standard_views = {{"noon", "horizon"}},
+                             .make = [](const app::Context& context) { return std::make_unique<FirstLight>(context); }};
   return app::run(argc, argv, chapter);
   // [/chapter]
 }

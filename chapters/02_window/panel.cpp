@@ -26,14 +26,16 @@ gpu::RenderPass create_render_pass(const gpu::Device& device, VkFormat format) {
                                            .initialLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
                                            .finalLayout = VK_IMAGE_LAYOUT_PRESENT_SRC_KHR};
   const VkAttachmentReference reference{0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
-  const VkSubpassDescription subpass{.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS, .colorAttachmentCount = 1, .pColorAttachments = &reference};
+  const VkSubpassDescription subpass{
+      .pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS, .colorAttachmentCount = 1, .pColorAttachments = &reference};
   // The picture beneath was drawn by the same stage just before.
-  const VkSubpassDependency dependency{.srcSubpass = VK_SUBPASS_EXTERNAL,
-                                       .dstSubpass = 0,
-                                       .srcStageMask = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT,
-                                       .dstStageMask = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT,
-                                       .srcAccessMask = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT,
-                                       .dstAccessMask = VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT};
+  const VkSubpassDependency dependency{
+      .srcSubpass = VK_SUBPASS_EXTERNAL,
+      .dstSubpass = 0,
+      .srcStageMask = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT,
+      .dstStageMask = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT,
+      .srcAccessMask = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT,
+      .dstAccessMask = VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT};
   const VkRenderPassCreateInfo info{.sType = VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO,
                                     .attachmentCount = 1,
                                     .pAttachments = &attachment,
@@ -52,18 +54,23 @@ bool knob_widget(const Knob& knob, Settings& settings) {
   if (!knob.choices.empty()) {
     if (ImGui::BeginCombo(knob.name.c_str(), settings.choice(knob.name).c_str())) {
       for (size_t i = 0; i < knob.choices.size(); ++i)
-        if (ImGui::Selectable(knob.choices[i].c_str(), before == static_cast<double>(i))) after = static_cast<double>(i);
+        if (ImGui::Selectable(knob.choices[i].c_str(), before == static_cast<double>(i)))
+          after = static_cast<double>(i);
       ImGui::EndCombo();
     }
   } else if (knob.integer) {
     int value = static_cast<int>(before);
-    if (ImGui::SliderInt(knob.name.c_str(), &value, static_cast<int>(knob.minimum), static_cast<int>(knob.maximum), "%d", ImGuiSliderFlags_AlwaysClamp)) after = value;
+    if (ImGui::SliderInt(knob.name.c_str(), &value, static_cast<int>(knob.minimum), static_cast<int>(knob.maximum),
+                         "%d", ImGuiSliderFlags_AlwaysClamp))
+      after = value;
   } else {
     float value = static_cast<float>(before);
-    if (ImGui::SliderFloat(knob.name.c_str(), &value, static_cast<float>(knob.minimum), static_cast<float>(knob.maximum), "%.3f", ImGuiSliderFlags_AlwaysClamp))
+    if (ImGui::SliderFloat(knob.name.c_str(), &value, static_cast<float>(knob.minimum),
+                           static_cast<float>(knob.maximum), "%.3f", ImGuiSliderFlags_AlwaysClamp))
       after = std::clamp(static_cast<double>(value), knob.minimum, knob.maximum);
   }
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s%s%s", knob.meaning.c_str(), knob.unit.empty() ? "" : ", ", knob.unit.c_str());
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip("%s%s%s", knob.meaning.c_str(), knob.unit.empty() ? "" : ", ", knob.unit.c_str());
   if (after == before) return false;
   settings.set_number(knob.name, after);
   return true;
@@ -81,7 +88,8 @@ struct Panel::State {
   size_t next = 0;
 };
 
-Panel::Panel(GLFWwindow* window, const gpu::Instance& instance, const gpu::Device& device, const WindowSwapchain& swapchain)
+Panel::Panel(GLFWwindow* window, const gpu::Instance& instance, const gpu::Device& device,
+             const WindowSwapchain& swapchain)
     : state_(new State{.device = device, .pass = create_render_pass(device, swapchain.format())}) {
   const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 8};
   const VkDescriptorPoolCreateInfo pool_info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
@@ -140,26 +148,31 @@ void Panel::swapchain_changed(const WindowSwapchain& swapchain) {
 bool Panel::wants_mouse() const { return ImGui::GetIO().WantCaptureMouse; }
 bool Panel::wants_keyboard() const { return ImGui::GetIO().WantTextInput; }
 
-void Panel::layout(const Chapter& chapter, const Scene& scene, Settings& settings, const gpu::Device& device, const CameraPose& pose, PanelState& state) {
+void Panel::layout(const Chapter& chapter, const Scene& scene, Settings& settings, const gpu::Device& device,
+                   const CameraPose& pose, PanelState& state) {
   ImGui_ImplVulkan_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   ImGui::NewFrame();
   if (state.visible) {
     ImGui::SetNextWindowPos({8, 8}, ImGuiCond_FirstUseEver);
-    ImGui::SetNextWindowSizeConstraints({0, 0}, {static_cast<float>(state_->size.width), static_cast<float>(state_->size.height) - 16.0f});
-    ImGui::Begin(fmt::format("{:02} {}", chapter.number, chapter.title).c_str(), nullptr, ImGuiWindowFlags_AlwaysAutoResize);
+    ImGui::SetNextWindowSizeConstraints(
+        {0, 0}, {static_cast<float>(state_->size.width), static_cast<float>(state_->size.height) - 16.0f});
+    ImGui::Begin(fmt::format("{:02} {}", chapter.number, chapter.title).c_str(), nullptr,
+                 ImGuiWindowFlags_AlwaysAutoResize);
     ImGui::PushTextWrapPos(340.0f);
     ImGui::TextUnformatted(chapter.whats_new.c_str());
     ImGui::TextDisabled(state.flying ? "F: back to the panel" : "F: fly (WASD, Space, Ctrl, Shift, mouse)");
     ImGui::TextDisabled("R reload shaders  P screenshot  H hide  Esc quit");
     if (chapter.truth && ImGui::Button("T: path-trace this view")) state.truth_asked = true;
-    ImGui::Text("altitude %.4g km\nazimuth %.1f, elevation %.1f", app::altitude_km(pose, scene.planet.ground_radius_km), pose.azimuth_deg, pose.elevation_deg);
+    ImGui::Text("altitude %.4g km\nazimuth %.1f, elevation %.1f", app::altitude_km(pose, scene.planet.ground_radius_km),
+                pose.azimuth_deg, pose.elevation_deg);
     if (!settings.knobs().empty() && ImGui::CollapsingHeader("Knobs", ImGuiTreeNodeFlags_DefaultOpen))
       for (const Knob& knob : settings.knobs())
         if (knob_widget(knob, settings)) state.changed.push_back(knob.name);
     if (chapter.sky) {
       float hours = static_cast<float>(state.time_s / 3600.0);
-      if (ImGui::SliderFloat("time, hours from the scene's", &hours, -12.0f, 12.0f, "%.2f")) state.time_s = 3600.0 * hours;
+      if (ImGui::SliderFloat("time, hours from the scene's", &hours, -12.0f, 12.0f, "%.2f"))
+        state.time_s = 3600.0 * hours;
     }
     if (ImGui::CollapsingHeader("Time per pass", ImGuiTreeNodeFlags_DefaultOpen)) {
       float total = 0.0f;
@@ -168,8 +181,11 @@ void Panel::layout(const Chapter& chapter, const Scene& scene, Settings& setting
         total += static_cast<float>(pass.milliseconds);
       }
       state_->history[state_->next++ % kHistory] = total;
-      ImGui::PlotLines("total", state_->history.data(), static_cast<int>(kHistory), static_cast<int>(state_->next % kHistory), fmt::format("{:.3f} ms", total).c_str(), 0.0f, *std::max_element(state_->history.begin(), state_->history.end()) * 1.1f, {0, 48});
-      ImGui::Text("%s held on %s", measure::human_bytes(device.allocated_bytes()).c_str(), device.candidate().name.c_str());
+      ImGui::PlotLines("total", state_->history.data(), static_cast<int>(kHistory),
+                       static_cast<int>(state_->next % kHistory), fmt::format("{:.3f} ms", total).c_str(), 0.0f,
+                       *std::max_element(state_->history.begin(), state_->history.end()) * 1.1f, {0, 48});
+      ImGui::Text("%s held on %s", measure::human_bytes(device.allocated_bytes()).c_str(),
+                  device.candidate().name.c_str());
     }
     if (!state.message.empty()) ImGui::TextUnformatted(state.message.c_str());
     ImGui::PopTextWrapPos();

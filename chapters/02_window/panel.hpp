@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "chapters/02_window/swapchain.hpp"
 #include "common/app/camera.hpp"
 #include "common/app/chapter.hpp"
-#include "chapters/02_window/swapchain.hpp"
 
 struct GLFWwindow;
 
@@ -16,7 +16,6 @@ namespace welkin {
 
 using app::CameraPose;
 using app::Chapter;
-
 
 // What the panel shows and what the user did with it.
 struct PanelState {
@@ -42,7 +41,8 @@ class Panel {
   bool wants_keyboard() const;
 
   // Lays the panel out; may change settings (recording names in state.changed) and the time.
-  void layout(const Chapter& chapter, const Scene& scene, Settings& settings, const gpu::Device& device, const CameraPose& pose, PanelState& state);
+  void layout(const Chapter& chapter, const Scene& scene, Settings& settings, const gpu::Device& device,
+              const CameraPose& pose, PanelState& state);
   // Draws over the image, which is in COLOR_ATTACHMENT_OPTIMAL and ends in PRESENT_SRC.
   void record(VkCommandBuffer commands, uint32_t image_index);
 

@@ -11,7 +11,8 @@ class PresentPass {
   PresentPass(const gpu::Device& device, VkFormat format);
   void set_image(const gpu::Device& device, const gpu::Image& displayed);
   // `displayed` was written by compute and is in GENERAL; `target` comes out in COLOR_ATTACHMENT_OPTIMAL.
-  void record(VkCommandBuffer commands, const gpu::Image& displayed, VkImage target, VkImageView target_view, VkExtent2D size) const;
+  void record(VkCommandBuffer commands, const gpu::Image& displayed, VkImage target, VkImageView target_view,
+              VkExtent2D size) const;
 
  private:
   gpu::SetLayout set_layout_;

@@ -17,9 +17,11 @@ gpu::Semaphore create_semaphore(const gpu::Device& device, VkSemaphoreType type)
 // 8-bit UNORM: the display pass has applied the sRGB curve already, an SRGB format would apply it twice.
 VkSurfaceFormatKHR choose_format(VkPhysicalDevice device, VkSurfaceKHR surface) {
   uint32_t count = 0;
-  gpu::check(vkGetPhysicalDeviceSurfaceFormatsKHR(device, surface, &count, nullptr), "vkGetPhysicalDeviceSurfaceFormatsKHR");
+  gpu::check(vkGetPhysicalDeviceSurfaceFormatsKHR(device, surface, &count, nullptr),
+             "vkGetPhysicalDeviceSurfaceFormatsKHR");
   std::vector<VkSurfaceFormatKHR> formats(count);
-  gpu::check(vkGetPhysicalDeviceSurfaceFormatsKHR(device, surface, &count, formats.data()), "vkGetPhysicalDeviceSurfaceFormatsKHR");
+  gpu::check(vkGetPhysicalDeviceSurfaceFormatsKHR(device, surface, &count, formats.data()),
+             "vkGetPhysicalDeviceSurfaceFormatsKHR");
   for (const VkSurfaceFormatKHR& format : formats)
     if ((format.format == VK_FORMAT_B8G8R8A8_UNORM || format.format == VK_FORMAT_R8G8B8A8_UNORM) &&
         format.colorSpace == VK_COLOR_SPACE_SRGB_NONLINEAR_KHR)
@@ -30,25 +32,33 @@ VkSurfaceFormatKHR choose_format(VkPhysicalDevice device, VkSurfaceKHR surface) 
 }  // namespace
 
 WindowSwapchain::WindowSwapchain(const gpu::Device& device, VkSurfaceKHR surface, VkExtent2D framebuffer)
-    : device_(device), surface_(surface), timeline_(create_semaphore(device, VK_SEMAPHORE_TYPE_TIMELINE)), pool_(gpu::create_command_pool(device)) {
+    : device_(device),
+      surface_(surface),
+      timeline_(create_semaphore(device, VK_SEMAPHORE_TYPE_TIMELINE)),
+      pool_(gpu::create_command_pool(device)) {
   VkBool32 supported = VK_FALSE;
-  gpu::check(vkGetPhysicalDeviceSurfaceSupportKHR(device.physical(), device.queue_family(), surface, &supported), "vkGetPhysicalDeviceSurfaceSupportKHR");
-  if (!supported) fail("{} cannot show pictures in this window: use --headless, or another --gpu", device.candidate().name);
+  gpu::check(vkGetPhysicalDeviceSurfaceSupportKHR(device.physical(), device.queue_family(), surface, &supported),
+             "vkGetPhysicalDeviceSurfaceSupportKHR");
+  if (!supported)
+    fail("{} cannot show pictures in this window: use --headless, or another --gpu", device.candidate().name);
   for (uint32_t i = 0; i < kFramesInFlight; ++i)
-    slots_.push_back({gpu::allocate_commands(device, pool_), create_semaphore(device, VK_SEMAPHORE_TYPE_BINARY), 0, gpu::Timer(device)});
+    slots_.push_back({gpu::allocate_commands(device, pool_), create_semaphore(device, VK_SEMAPHORE_TYPE_BINARY), 0,
+                      gpu::Timer(device)});
   create(framebuffer, VK_NULL_HANDLE);
 }
 
 // [create]
 void WindowSwapchain::create(VkExtent2D framebuffer, VkSwapchainKHR old) {
   VkSurfaceCapabilitiesKHR can;
-  gpu::check(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device_.physical(), surface_, &can), "vkGetPhysicalDeviceSurfaceCapabilitiesKHR");
+  gpu::check(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device_.physical(), surface_, &can),
+             "vkGetPhysicalDeviceSurfaceCapabilitiesKHR");
   const VkSurfaceFormatKHR format = choose_format(device_.physical(), surface_);
   format_ = format.format;
   // Some window systems dictate the size; others leave it to us (0xFFFFFFFF) within bounds.
-  size_ = can.currentExtent.width != ~0u ? can.currentExtent
-                                         : VkExtent2D{std::clamp(framebuffer.width, can.minImageExtent.width, can.maxImageExtent.width),
-                                                      std::clamp(framebuffer.height, can.minImageExtent.height, can.maxImageExtent.height)};
+  size_ = can.currentExtent.width != ~0u
+              ? can.currentExtent
+              : VkExtent2D{std::clamp(framebuffer.width, can.minImageExtent.width, can.maxImageExtent.width),
+                           std::clamp(framebuffer.height, can.minImageExtent.height, can.maxImageExtent.height)};
   const uint32_t most = can.maxImageCount == 0 ? ~0u : can.maxImageCount;  // 0: no limit
   const VkSwapchainCreateInfoKHR info{.sType = VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR,
                                       .surface = surface_,
@@ -96,22 +106,29 @@ void WindowSwapchain::recreate(VkExtent2D framebuffer) {
 }
 
 void WindowSwapchain::wait_for_all_frames() const {
-  const VkSemaphoreWaitInfo info{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO, .semaphoreCount = 1, .pSemaphores = timeline_.address(), .pValues = &submitted_value_};
+  const VkSemaphoreWaitInfo info{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO,
+                                 .semaphoreCount = 1,
+                                 .pSemaphores = timeline_.address(),
+                                 .pValues = &submitted_value_};
   gpu::check(vkWaitSemaphores(device_, &info, UINT64_MAX), "vkWaitSemaphores");
 }
 
 void WindowSwapchain::wait_for_presentation() const noexcept {
-  // The timeline tells of our commands only. Presentation may still wait on the images' semaphores; the queue being idle
-  // is what says that it does not. A lost device ends the wait too: whoever uses it next hears of that.
+  // The timeline tells of our commands only. Presentation may still wait on the images' semaphores; the queue being
+  // idle is what says that it does not. A lost device ends the wait too: whoever uses it next hears of that.
   vkQueueWaitIdle(device_.queue());
 }
 
 // [begin_frame]
 FrameSlot* WindowSwapchain::begin_frame(uint32_t& image_index) {
   FrameSlot& slot = slots_[next_slot_];
-  const VkSemaphoreWaitInfo info{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO, .semaphoreCount = 1, .pSemaphores = timeline_.address(), .pValues = &slot.finished_value};
+  const VkSemaphoreWaitInfo info{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO,
+                                 .semaphoreCount = 1,
+                                 .pSemaphores = timeline_.address(),
+                                 .pValues = &slot.finished_value};
   gpu::check(vkWaitSemaphores(device_, &info, UINT64_MAX), "vkWaitSemaphores");
-  const VkResult result = vkAcquireNextImageKHR(device_, swapchain_, UINT64_MAX, slot.image_acquired, VK_NULL_HANDLE, &image_index);
+  const VkResult result =
+      vkAcquireNextImageKHR(device_, swapchain_, UINT64_MAX, slot.image_acquired, VK_NULL_HANDLE, &image_index);
   if (result == VK_ERROR_OUT_OF_DATE_KHR) return nullptr;
   gpu::check(result, "vkAcquireNextImageKHR");
   next_slot_ = (next_slot_ + 1) % kFramesInFlight;
@@ -133,7 +150,8 @@ bool WindowSwapchain::end_frame(FrameSlot& slot, uint32_t image_index) {
                             .semaphore = timeline_,
                             .value = submitted_value_,
                             .stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT}};
-  const VkCommandBufferSubmitInfo commands{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO, .commandBuffer = slot.commands};
+  const VkCommandBufferSubmitInfo commands{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
+                                           .commandBuffer = slot.commands};
   const VkSubmitInfo2 submit{.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2,
                              .waitSemaphoreInfoCount = 1,
                              .pWaitSemaphoreInfos = &wait,

@@ -2,11 +2,10 @@
 #include "chapters/02_window/window.hpp"
 
 #define GLFW_INCLUDE_NONE
-#include <vulkan/vulkan.h>
-
 #include <GLFW/glfw3.h>
 #include <dlfcn.h>
 #include <unistd.h>
+#include <vulkan/vulkan.h>
 
 #include <algorithm>
 #include <cmath>
@@ -43,7 +42,8 @@ void watch_display() {
   void* xlib = dlopen("libX11.so.6", RTLD_LAZY | RTLD_NOLOAD);
   if (xlib == nullptr) return;  // another window system
   using SetHandler = int (*(*)(int (*)(void*)))(void*);
-  if (const auto set = reinterpret_cast<SetHandler>(dlsym(xlib, "XSetIOErrorHandler")); set != nullptr) set(on_display_lost);
+  if (const auto set = reinterpret_cast<SetHandler>(dlsym(xlib, "XSetIOErrorHandler")); set != nullptr)
+    set(on_display_lost);
 }
 
 struct Surface {
@@ -65,12 +65,18 @@ Window& window_of(GLFWwindow* handle) { return *static_cast<Window*>(glfwGetWind
 
 void open_window(Window& window, const std::string& title, VkExtent2D size) {
   glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
-  window.handle = glfwCreateWindow(static_cast<int>(size.width), static_cast<int>(size.height), title.c_str(), nullptr, nullptr);
-  if (window.handle == nullptr) fail("cannot open a window of {}x{}: {}; --headless needs none", size.width, size.height, last_glfw_error());
+  window.handle =
+      glfwCreateWindow(static_cast<int>(size.width), static_cast<int>(size.height), title.c_str(), nullptr, nullptr);
+  if (window.handle == nullptr)
+    fail("cannot open a window of {}x{}: {}; --headless needs none", size.width, size.height, last_glfw_error());
   glfwSetWindowUserPointer(window.handle, &window);
   glfwSetFramebufferSizeCallback(window.handle, [](GLFWwindow* w, int, int) { window_of(w).resized = true; });
-  glfwSetKeyCallback(window.handle, [](GLFWwindow* w, int key, int, int action, int) { if (action == GLFW_PRESS) window_of(w).keys.push_back(key); });
-  glfwSetDropCallback(window.handle, [](GLFWwindow* w, int count, const char** paths) { window_of(w).dropped.assign(paths, paths + count); });
+  glfwSetKeyCallback(window.handle, [](GLFWwindow* w, int key, int, int action, int) {
+    if (action == GLFW_PRESS) window_of(w).keys.push_back(key);
+  });
+  glfwSetDropCallback(window.handle, [](GLFWwindow* w, int count, const char** paths) {
+    window_of(w).dropped.assign(paths, paths + count);
+  });
 }
 
 // Framebuffer, not window, size: they differ on displays with a scale.
@@ -80,10 +86,12 @@ VkExtent2D framebuffer_size(GLFWwindow* window) {
   return {static_cast<uint32_t>(width), static_cast<uint32_t>(height)};
 }
 
-void move_camera(Window& window, const Panel& panel, PanelState& state, CameraPose& pose, double seconds, double ground_radius_km) {
+void move_camera(Window& window, const Panel& panel, PanelState& state, CameraPose& pose, double seconds,
+                 double ground_radius_km) {
   double x = 0.0, y = 0.0;
   glfwGetCursorPos(window.handle, &x, &y);
-  const bool dragging = glfwGetMouseButton(window.handle, GLFW_MOUSE_BUTTON_RIGHT) == GLFW_PRESS && !panel.wants_mouse();
+  const bool dragging =
+      glfwGetMouseButton(window.handle, GLFW_MOUSE_BUTTON_RIGHT) == GLFW_PRESS && !panel.wants_mouse();
   if (state.flying || dragging) {
     const double degrees_per_pixel = pose.fov_deg / framebuffer_size(window.handle).height;
     turn(pose, (x - window.mouse_x) * degrees_per_pixel, (window.mouse_y - y) * degrees_per_pixel);
@@ -91,7 +99,8 @@ void move_camera(Window& window, const Panel& panel, PanelState& state, CameraPo
   window.mouse_x = x, window.mouse_y = y;
   if (!state.flying || panel.wants_keyboard()) return;
   const auto down = [&](int key) { return glfwGetKey(window.handle, key) == GLFW_PRESS ? 1.0 : 0.0; };
-  const glm::dvec3 axes(down(GLFW_KEY_D) - down(GLFW_KEY_A), down(GLFW_KEY_W) - down(GLFW_KEY_S), down(GLFW_KEY_SPACE) - down(GLFW_KEY_LEFT_CONTROL));
+  const glm::dvec3 axes(down(GLFW_KEY_D) - down(GLFW_KEY_A), down(GLFW_KEY_W) - down(GLFW_KEY_S),
+                        down(GLFW_KEY_SPACE) - down(GLFW_KEY_LEFT_CONTROL));
   if (axes != glm::dvec3(0.0)) fly(pose, axes, seconds, down(GLFW_KEY_LEFT_SHIFT) > 0.0, ground_radius_km);
 }
 
@@ -110,9 +119,16 @@ struct Loop {
   gpu::CommandPool pool;  // for screenshots
 
   Loop(Session& s, Window& w, VkSurfaceKHR surface)
-      : session(s), window(w), swapchain(s.device, surface, framebuffer_size(w.handle)), program(s.make_program()), display(make_display_system(s.context, s.chapter)),
-        present(s.device, swapchain.format()), targets(create_targets(s.device, swapchain.size())),
-        panel(w.handle, s.instance, s.device, swapchain), pose(s.first_pose()), pool(gpu::create_command_pool(s.device)) {
+      : session(s),
+        window(w),
+        swapchain(s.device, surface, framebuffer_size(w.handle)),
+        program(s.make_program()),
+        display(make_display_system(s.context, s.chapter)),
+        present(s.device, swapchain.format()),
+        targets(create_targets(s.device, swapchain.size())),
+        panel(w.handle, s.instance, s.device, swapchain),
+        pose(s.first_pose()),
+        pool(gpu::create_command_pool(s.device)) {
     state.time_s = s.options.time_s;
     use_targets();
   }
@@ -136,8 +152,10 @@ struct Loop {
 
   std::string save(std::string file) {
     swapchain.wait_for_all_frames();
-    Session now = {session.chapter, session.options, session.scene, session.settings, session.instance, session.device, session.context};
-    write_output(now, file, pose, read_picture(session.device, pool, targets.picture), read_displayed(session.device, pool, targets.displayed));
+    Session now = {session.chapter,  session.options, session.scene,  session.settings,
+                   session.instance, session.device,  session.context};
+    write_output(now, file, pose, read_picture(session.device, pool, targets.picture),
+                 read_displayed(session.device, pool, targets.displayed));
     return file;
   }
 
@@ -163,23 +181,29 @@ struct Loop {
   }
 };
 
-// Path-traces the present view, small, and says how far the method is from it: and how far two such truths are from each
-// other, because noise is not error. Without the sun's disc, whose few pixels would be all a mean of squares sees.
+// Path-traces the present view, small, and says how far the method is from it: and how far two such truths are from
+// each other, because noise is not error. Without the sun's disc, whose few pixels would be all a mean of squares sees.
 std::string Loop::error_of_what_is_shown() const {
   if (!session.chapter.truth) return "this chapter has no path tracer to be measured against; those from 09 on have";
   constexpr VkExtent2D kSize{48, 27};
   Scene scene = session.scene;
   scene.sun.disc = false;
-  const Session still{session.chapter, session.options, scene, session.settings, session.instance, session.device,
+  const Session still{session.chapter,
+                      session.options,
+                      scene,
+                      session.settings,
+                      session.instance,
+                      session.device,
                       {session.device, scene, session.settings, session.options.inject}};
   const std::unique_ptr<Program> method = still.make_program();
   Renderer renderer(still.context, still.chapter, *method, kSize);
   renderer.draw(pose, state.time_s, still.options.seed, 0);
   const Image truth = draw_truth(still, pose, kSize, 1), again = draw_truth(still, pose, kSize, 2);
   const auto as_it_is = [](const glm::vec3& value) { return value; };
-  return fmt::format("relative RMSE {:.2g} % against {} frames of path tracing at {}x{}; two of those differ by {:.2g} %",
-                     100.0 * measure::compare(renderer.picture(), truth, as_it_is).relative_rmse, session.chapter.truth->frames, kSize.width, kSize.height,
-                     100.0 * measure::compare(again, truth, as_it_is).relative_rmse);
+  return fmt::format(
+      "relative RMSE {:.2g} % against {} frames of path tracing at {}x{}; two of those differ by {:.2g} %",
+      100.0 * measure::compare(renderer.picture(), truth, as_it_is).relative_rmse, session.chapter.truth->frames,
+      kSize.width, kSize.height, 100.0 * measure::compare(again, truth, as_it_is).relative_rmse);
 }
 
 void Loop::ask_truth() {
@@ -229,7 +253,8 @@ bool Loop::draw(uint32_t index, double seconds) {
   if (slot == nullptr) return false;
   state.times = slot->timer.read();  // of this slot's earlier frame, finished now
   const VkExtent2D size = swapchain.size();
-  const CameraRays camera = camera_rays(pose, session.scene, state.time_s, {size.width, size.height}, session.options.seed, index);
+  const CameraRays camera =
+      camera_rays(pose, session.scene, state.time_s, {size.width, size.height}, session.options.seed, index);
   state.changed.clear();
   if (state.truth_asked) ask_truth();
   panel.layout(session.chapter, session.scene, session.settings, session.device, pose, state);
@@ -242,7 +267,9 @@ bool Loop::draw(uint32_t index, double seconds) {
     }
   }
   gpu::begin_commands(slot->commands);
-  record_frame(session.context, *program, *display, targets, {slot->commands, targets.picture, camera, slot->timer, index, session.options.seed, seconds, pose.position_km});
+  record_frame(
+      session.context, *program, *display, targets,
+      {slot->commands, targets.picture, camera, slot->timer, index, session.options.seed, seconds, pose.position_km});
   present.record(slot->commands, targets.displayed, swapchain.image(image), swapchain.view(image), size);
   panel.record(slot->commands, image);
   gpu::end_commands(slot->commands);
@@ -250,13 +277,16 @@ bool Loop::draw(uint32_t index, double seconds) {
 }
 
 Exit run_window(Session& session) {
-  const VkExtent2D wanted = session.options.size_given || !session.device.candidate().software ? session.options.size : kSoftwareSize;
+  const VkExtent2D wanted =
+      session.options.size_given || !session.device.candidate().software ? session.options.size : kSoftwareSize;
   Window window;
   open_window(window, fmt::format("Welkin {:02}: {}", session.chapter.number, session.chapter.title), wanted);
   Surface surface{session.instance};
-  gpu::check(glfwCreateWindowSurface(session.instance, window.handle, nullptr, &surface.handle), "glfwCreateWindowSurface");
+  gpu::check(glfwCreateWindowSurface(session.instance, window.handle, nullptr, &surface.handle),
+             "glfwCreateWindowSurface");
   Loop loop(session, window, surface.handle);
-  fmt::print("window on {} ({}); F flies, H hides the panel, P saves a picture, T asks the truth, Esc quits\n", session.device.candidate().name, session.device.candidate().driver);
+  fmt::print("window on {} ({}); F flies, H hides the panel, P saves a picture, T asks the truth, Esc quits\n",
+             session.device.candidate().name, session.device.candidate().driver);
   std::fflush(stdout);
 
   // [loop]
@@ -287,7 +317,8 @@ Exit run_window(Session& session) {
     if (++index == session.options.frames) break;
   }
   // [/loop]
-  for (const gpu::PassTime& pass : loop.state.times) fmt::print("  {:<20} {:>10.3f} ms\n", pass.name, pass.milliseconds);
+  for (const gpu::PassTime& pass : loop.state.times)
+    fmt::print("  {:<20} {:>10.3f} ms\n", pass.name, pass.milliseconds);
   if (!session.options.output.empty()) fmt::print("wrote {}\n", loop.save(session.options.output));
   return Exit::ok;
 }
@@ -296,9 +327,11 @@ Exit run_window(Session& session) {
 class GlfwWindowSystem : public app::WindowSystem {
  public:
   GlfwWindowSystem() {
-    if (glfwInit() != GLFW_TRUE) fail("cannot open the display: {}; unset DISPLAY or use --headless to draw into a file", last_glfw_error());
+    if (glfwInit() != GLFW_TRUE)
+      fail("cannot open the display: {}; unset DISPLAY or use --headless to draw into a file", last_glfw_error());
     watch_display();
-    if (glfwVulkanSupported() != GLFW_TRUE) fail("the window library finds no Vulkan loader for windows ({}); use --headless", last_glfw_error());
+    if (glfwVulkanSupported() != GLFW_TRUE)
+      fail("the window library finds no Vulkan loader for windows ({}); use --headless", last_glfw_error());
   }
   ~GlfwWindowSystem() override { glfwTerminate(); }
 

@@ -22,7 +22,8 @@ void require(bool good, const char* what, double value, const char* accepted) {
 double refractive_index(double wavelength_um) {
   require(wavelength_um >= 0.23 && wavelength_um <= 1.69, "wavelength", wavelength_um, "0.23 … 1.69 um");
   const double wavenumber2 = 1.0 / (wavelength_um * wavelength_um);  // um^-2
-  return 1.0 + 1e-8 * (5791817.0 / (238.0185 - wavenumber2) + 167909.0 / (57.362 - wavenumber2));  // Peck and Reeder 1972, four constants
+  return 1.0 + 1e-8 * (5791817.0 / (238.0185 - wavenumber2) +
+                       167909.0 / (57.362 - wavenumber2));  // Peck and Reeder 1972, four constants
 }
 // [/refractive_index]
 
@@ -39,12 +40,12 @@ double number_density(double pressure_Pa, double temperature_K) {
 double king_factor(double wavelength_um) {
   require(wavelength_um >= 0.2 && wavelength_um <= 4.0, "wavelength", wavelength_um, "0.2 … 4 um");
   const double x = 1.0 / (wavelength_um * wavelength_um);
-  const double nitrogen = 1.034 + 3.17e-4 * x;                       // Bates 1984, as Bodhaine et al. 1999, eq. 5
-  const double oxygen = 1.096 + 1.385e-3 * x + 1.448e-4 * x * x;     // eq. 6
-  constexpr double argon = 1.00, carbon_dioxide = 1.15;              // an atom is round
-  constexpr double share[] = {78.084, 20.946, 0.934, 0.036};         // per cent of volume
+  const double nitrogen = 1.034 + 3.17e-4 * x;                    // Bates 1984, as Bodhaine et al. 1999, eq. 5
+  const double oxygen = 1.096 + 1.385e-3 * x + 1.448e-4 * x * x;  // eq. 6
+  constexpr double argon = 1.00, carbon_dioxide = 1.15;           // an atom is round
+  constexpr double share[] = {78.084, 20.946, 0.934, 0.036};      // per cent of volume
   return (share[0] * nitrogen + share[1] * oxygen + share[2] * argon + share[3] * carbon_dioxide) /
-         (share[0] + share[1] + share[2] + share[3]);                // eq. 23
+         (share[0] + share[1] + share[2] + share[3]);  // eq. 23
 }
 
 double king_factor_from_depolarization(double rho) { return (6.0 + 3.0 * rho) / (6.0 - 7.0 * rho); }
@@ -56,12 +57,14 @@ double rayleigh_scattering_per_km(double wavelength_um, double n, double molecul
   require(molecules_per_m3 > 0.0, "number density", molecules_per_m3, "more than 0");
   const double wavelength_m = wavelength_um * 1e-6;
   const double refraction = (n - 1.0) * (n + 1.0);  // n^2 - 1, without the cancellation
-  return 1e3 * 8.0 * pi * pi * pi * refraction * refraction / (3.0 * molecules_per_m3 * std::pow(wavelength_m, 4)) * king;
+  return 1e3 * 8.0 * pi * pi * pi * refraction * refraction / (3.0 * molecules_per_m3 * std::pow(wavelength_m, 4)) *
+         king;
 }
 
 double rayleigh_scattering_per_km(double wavelength_um) {
   return rayleigh_scattering_per_km(wavelength_um, refractive_index(wavelength_um),
-                                    number_density(kStandardPressure_Pa, kStandardTemperature_K), king_factor(wavelength_um));
+                                    number_density(kStandardPressure_Pa, kStandardTemperature_K),
+                                    king_factor(wavelength_um));
 }
 // [/rayleigh]
 
@@ -77,7 +80,8 @@ double aerosol_optical_depth(double wavelength_um, double turbidity) {
 double ozone_absorption_per_km(double cross_section_m2, double column_DU, double half_width_km) {
   require(half_width_km > 0.0, "half width", half_width_km, "more than 0 km");
   constexpr double molecules_per_m2_and_DU = 2.687e20;
-  const double peak_per_m3 = column_DU * molecules_per_m2_and_DU / (half_width_km * 1e3);  // a tent's area is height times half width
+  const double peak_per_m3 =
+      column_DU * molecules_per_m2_and_DU / (half_width_km * 1e3);  // a tent's area is height times half width
   return 1e3 * cross_section_m2 * peak_per_m3;
 }
 // [/ozone]
@@ -86,10 +90,17 @@ double ozone_absorption_per_km(double cross_section_m2, double column_DU, double
 std::vector<Medium> quoted_earth() {
   return {{.kind = "rayleigh", .scattering_per_km = {5.802e-3, 13.558e-3, 33.1e-3}, .scale_height_km = 8.0},
           // Absorption is extinction - scattering = 4.440e-3 - 3.996e-3.
-          {.kind = "mie", .scattering_per_km = glm::dvec3(3.996e-3), .absorption_per_km = glm::dvec3(0.444e-3),
-           .scale_height_km = 1.2, .phase = Phase::cornette_shanks, .g = 0.8},
-          {.kind = "ozone", .absorption_per_km = {0.650e-3, 1.881e-3, 0.085e-3}, .profile = Profile::tent,
-           .peak_altitude_km = 25.0, .half_width_km = 15.0}};
+          {.kind = "mie",
+           .scattering_per_km = glm::dvec3(3.996e-3),
+           .absorption_per_km = glm::dvec3(0.444e-3),
+           .scale_height_km = 1.2,
+           .phase = Phase::cornette_shanks,
+           .g = 0.8},
+          {.kind = "ozone",
+           .absorption_per_km = {0.650e-3, 1.881e-3, 0.085e-3},
+           .profile = Profile::tent,
+           .peak_altitude_km = 25.0,
+           .half_width_km = 15.0}};
 }
 // [/quoted]
 
@@ -110,12 +121,14 @@ std::vector<Medium> derived_earth(double turbidity, double ozone_DU) {
 
 // [columns]
 double relative_density(const Medium& medium, double altitude_km) {
-  if (medium.profile == Profile::tent) return std::max(0.0, 1.0 - std::abs(altitude_km - medium.peak_altitude_km) / medium.half_width_km);
+  if (medium.profile == Profile::tent)
+    return std::max(0.0, 1.0 - std::abs(altitude_km - medium.peak_altitude_km) / medium.half_width_km);
   return std::exp(-altitude_km / medium.scale_height_km);
 }
 
 double vertical_column_km(const Medium& medium, double top_km) {
-  if (medium.profile == Profile::exponential) return -medium.scale_height_km * std::expm1(-top_km / medium.scale_height_km);
+  if (medium.profile == Profile::exponential)
+    return -medium.scale_height_km * std::expm1(-top_km / medium.scale_height_km);
   // A tent: its integral up to z, counted from its left foot in half widths, is u^2/2 rising and 1 - (2-u)^2/2 falling.
   const auto below = [&](double z) {
     const double u = std::clamp((z - medium.peak_altitude_km) / medium.half_width_km + 1.0, 0.0, 2.0);
@@ -128,16 +141,29 @@ double vertical_column_km(const Medium& medium, double top_km) {
 // [make_atmosphere]
 interop::Atmosphere make_atmosphere(const Scene& scene) {
   const Medium none{.scale_height_km = 1.0, .half_width_km = 1.0};  // coefficients 0, and no shape that divides by 0
-  const auto medium = [&](const char* kind) -> const Medium& { const Medium* found = scene.medium(kind); return found ? *found : none; };
+  const auto medium = [&](const char* kind) -> const Medium& {
+    const Medium* found = scene.medium(kind);
+    return found ? *found : none;
+  };
   const Medium &rayleigh = medium("rayleigh"), &mie = medium("mie"), &ozone = medium("ozone");
   const Planet& planet = scene.planet;
-  return {.rayleigh = {rayleigh.scattering_per_km, rayleigh.scale_height_km},
-          .mie_scattering = {mie.scattering_per_km, mie.scale_height_km},
-          .mie_extinction = {mie.scattering_per_km + mie.absorption_per_km, mie.g},
-          .ozone = {ozone.absorption_per_km, ozone.peak_altitude_km},
-          .shape = {planet.ground_radius_km, planet.top_radius_km - planet.ground_radius_km, ozone.half_width_km, scene.sun.angular_radius_deg * pi / 180.0},
-          .ground = {planet.ground_albedo, mie.second_g},
-          .sun = {scene.sun.irradiance, mie.phase == Phase::double_hg ? mie.second_weight : mie.draine_alpha}};
+  const auto single = [](double value) { return static_cast<float>(value); };
+  return {.rayleigh_scattering = rayleigh.scattering_per_km,
+          .rayleigh_scale_height_km = single(rayleigh.scale_height_km),
+          .mie_scattering = mie.scattering_per_km,
+          .mie_scale_height_km = single(mie.scale_height_km),
+          .mie_extinction = mie.scattering_per_km + mie.absorption_per_km,
+          .mie_g = single(mie.g),
+          .ozone_absorption = ozone.absorption_per_km,
+          .ozone_peak_km = single(ozone.peak_altitude_km),
+          .ground_radius_km = single(planet.ground_radius_km),
+          .top_km = single(planet.top_radius_km - planet.ground_radius_km),
+          .ozone_half_width_km = single(ozone.half_width_km),
+          .sun_angular_radius = single(scene.sun.angular_radius_deg * pi / 180.0),
+          .ground_albedo = planet.ground_albedo,
+          .second_g = single(mie.second_g),
+          .solar_irradiance = scene.sun.irradiance,
+          .mie_alpha = single(mie.phase == Phase::double_hg ? mie.second_weight : mie.draine_alpha)};
 }
 // [/make_atmosphere]
 

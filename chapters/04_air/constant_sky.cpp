@@ -10,7 +10,9 @@ namespace welkin {
 namespace {
 
 constexpr VkShaderStageFlags kSphereStages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
-const std::vector<gpu::Binding> kRayBindings{{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}, {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, {2, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+const std::vector<gpu::Binding> kRayBindings{{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
+                                             {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
+                                             {2, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
 const std::vector<gpu::Binding> kSphereBindings{{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_SHADER_STAGE_FRAGMENT_BIT},
                                                 {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_SHADER_STAGE_VERTEX_BIT},
                                                 {2, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_SHADER_STAGE_VERTEX_BIT}};
@@ -24,14 +26,16 @@ gpu::Buffer upload(const gpu::Device& device, const char* name, const std::vecto
 
 // Runs sky_rays.comp over `count` items of 64 a workgroup.
 template <typename Push>
-void dispatch_rays(VkCommandBuffer commands, const gpu::ComputePipeline& pipeline, const gpu::DescriptorSet& set, const Push& push, uint32_t count) {
+void dispatch_rays(VkCommandBuffer commands, const gpu::ComputePipeline& pipeline, const gpu::DescriptorSet& set,
+                   const Push& push, uint32_t count) {
   gpu::dispatch_over(commands, pipeline, set, push, {8 * ((count + 63) / 64), 1});
 }
 
 interop::Atmosphere air_of(const app::Context& context) {
   Scene scene = context.scene;
   // The copied slip: 4.40e-3 where 0.44e-3 is meant. Planted to show that the tests see it.
-  if (Medium* mie = scene.medium("mie"); mie != nullptr && context.inject == "wrong-constant") mie->absorption_per_km *= 10.0;
+  if (Medium* mie = scene.medium("mie"); mie != nullptr && context.inject == "wrong-constant")
+    mie->absorption_per_km *= 10.0;
   return make_atmosphere(scene);
 }
 
@@ -40,7 +44,8 @@ interop::Atmosphere air_of(const app::Context& context) {
 ConstantSkyProgram::ConstantSkyProgram(const app::Context& context)
     : context_(context),
       atmosphere_(gpu::create_buffer(context.device, "atmosphere", sizeof(interop::Atmosphere),
-                                     VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Where::device)) {
+                                     VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                     gpu::Where::device)) {
   rebuild();
 }
 
@@ -53,7 +58,9 @@ void ConstantSkyProgram::rebuild() {
   directions_ = upload(device, "sphere vertices", sphere.directions, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
   indices_ = upload(device, "sphere triangles", sphere.indices, VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
   index_count_ = static_cast<uint32_t>(sphere.indices.size());
-  colours_ = per_vertex_ ? gpu::create_buffer(device, "vertex colours", directions_.bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::device) : gpu::Buffer{};
+  colours_ = per_vertex_ ? gpu::create_buffer(device, "vertex colours", directions_.bytes,
+                                              VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::device)
+                         : gpu::Buffer{};
 
   // Constants 0 to 3: what the scene's air is made of. 4: which phase functions. 5: each shader's own.
   gpu::Specialization constants = specialization(air_variant(context_.scene));
@@ -61,10 +68,12 @@ void ConstantSkyProgram::rebuild() {
   constants.push_back(per_vertex_);
   make_sphere_pipeline(constants);
   constants.back() = context_.scene.sun.disc;
-  finish_pipeline_ = gpu::create_compute_pipeline(device, "04_air/finish.comp", {{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}, {1}, {2}}, sizeof(CameraRays), constants);
+  finish_pipeline_ = gpu::create_compute_pipeline(
+      device, "04_air/finish.comp", {{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}, {1}, {2}}, sizeof(CameraRays), constants);
   constants.back() = false;
   if (per_vertex_) {
-    colour_pipeline_ = gpu::create_compute_pipeline(device, "04_air/sky_rays.comp", kRayBindings, sizeof(CameraRays), constants);
+    colour_pipeline_ =
+        gpu::create_compute_pipeline(device, "04_air/sky_rays.comp", kRayBindings, sizeof(CameraRays), constants);
     colour_set_ = gpu::create_descriptor_set(device, colour_pipeline_.set_layout, kRayBindings);
     gpu::write_buffer(device, colour_set_, 0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, atmosphere_);
     gpu::write_buffer(device, colour_set_, 1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, directions_);
@@ -73,7 +82,8 @@ void ConstantSkyProgram::rebuild() {
   sphere_set_ = gpu::create_descriptor_set(device, sphere_set_layout_, kSphereBindings);
   gpu::write_buffer(device, sphere_set_, 0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, atmosphere_);
   gpu::write_buffer(device, sphere_set_, 1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, directions_);
-  gpu::write_buffer(device, sphere_set_, 2, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, per_vertex_ ? colours_ : directions_);  // unread without colours
+  gpu::write_buffer(device, sphere_set_, 2, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                    per_vertex_ ? colours_ : directions_);  // unread without colours
   finish_set_ = gpu::create_descriptor_set(device, finish_pipeline_.set_layout, finish_pipeline_.bindings);
   gpu::write_buffer(device, finish_set_, 0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, atmosphere_);
   if (target_ != nullptr) set_target(*target_);
@@ -83,7 +93,8 @@ void ConstantSkyProgram::rebuild() {
 void ConstantSkyProgram::set_target(const gpu::Image& target) {
   target_ = &target;
   if (sky_.size.width != target.size.width || sky_.size.height != target.size.height)
-    sky_ = gpu::create_image(context_.device, "sky", target.size, VK_FORMAT_R32G32B32A32_SFLOAT, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_STORAGE_BIT);
+    sky_ = gpu::create_image(context_.device, "sky", target.size, VK_FORMAT_R32G32B32A32_SFLOAT,
+                             VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_STORAGE_BIT);
   gpu::write_storage_image(context_.device, finish_set_, 1, sky_);
   gpu::write_storage_image(context_.device, finish_set_, 2, target);
 }
@@ -91,8 +102,10 @@ void ConstantSkyProgram::set_target(const gpu::Image& target) {
 // [draw]
 void ConstantSkyProgram::draw(const app::Frame& frame) {
   const VkCommandBuffer commands = frame.commands;
-  // The air: scene and sun may have changed. An earlier frame may still read the buffer; its stages stand on the before side.
-  constexpr VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, fragment = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
+  // The air: scene and sun may have changed. An earlier frame may still read the buffer; its stages stand on the before
+  // side.
+  constexpr VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                                  fragment = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
   constexpr gpu::Use updated{VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT};
   const interop::Atmosphere air = air_of(context_);
   gpu::buffer_barrier(commands, atmosphere_.handle, {compute | fragment}, updated);
@@ -100,14 +113,17 @@ void ConstantSkyProgram::draw(const app::Frame& frame) {
   gpu::buffer_barrier(commands, atmosphere_.handle, updated, {compute | fragment, VK_ACCESS_2_UNIFORM_READ_BIT});
 
   // The sky image: read by the finish pass of an earlier frame, drawn into, read by the finish pass of this one.
-  constexpr gpu::Use drawn{VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
+  constexpr gpu::Use drawn{VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
+                           VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
   gpu::image_barrier(commands, sky_.handle, {compute}, drawn);
   {
-    const gpu::TimedPass pass(frame.timer, commands, "sky sphere");  // its vertices' colours included, so that methods compare
+    const gpu::TimedPass pass(frame.timer, commands,
+                              "sky sphere");  // its vertices' colours included, so that methods compare
     if (per_vertex_) {
       constexpr VkPipelineStageFlags2 vertex = VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT;
       gpu::buffer_barrier(commands, colours_.handle, {vertex}, gpu::kComputeWrite);
-      dispatch_rays(commands, colour_pipeline_, colour_set_, frame.camera, static_cast<uint32_t>(directions_.bytes / sizeof(glm::vec4)));
+      dispatch_rays(commands, colour_pipeline_, colour_set_, frame.camera,
+                    static_cast<uint32_t>(directions_.bytes / sizeof(glm::vec4)));
       gpu::buffer_barrier(commands, colours_.handle, gpu::kComputeWrite, {vertex, VK_ACCESS_2_SHADER_STORAGE_READ_BIT});
     }
     draw_sphere(frame);
@@ -121,19 +137,26 @@ void ConstantSkyProgram::draw(const app::Frame& frame) {
 
 void ConstantSkyProgram::draw_sphere(const app::Frame& frame) {
   const VkCommandBuffer commands = frame.commands;
-  const VkRenderingAttachmentInfo colour{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
-                                         .imageView = sky_.view,
-                                         .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-                                         .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,  // a sphere with a hole shows black, not old memory
-                                         .storeOp = VK_ATTACHMENT_STORE_OP_STORE};
+  const VkRenderingAttachmentInfo colour{
+      .sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
+      .imageView = sky_.view,
+      .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+      .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,  // a sphere with a hole shows black, not old memory
+      .storeOp = VK_ATTACHMENT_STORE_OP_STORE};
   const VkRect2D area{{0, 0}, sky_.size};
-  const VkViewport viewport{0.0f, 0.0f, static_cast<float>(sky_.size.width), static_cast<float>(sky_.size.height), 0.0f, 1.0f};
-  const VkRenderingInfo rendering{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO, .renderArea = area, .layerCount = 1, .colorAttachmentCount = 1, .pColorAttachments = &colour};
+  const VkViewport viewport{0.0f, 0.0f, static_cast<float>(sky_.size.width), static_cast<float>(sky_.size.height),
+                            0.0f, 1.0f};
+  const VkRenderingInfo rendering{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
+                                  .renderArea = area,
+                                  .layerCount = 1,
+                                  .colorAttachmentCount = 1,
+                                  .pColorAttachments = &colour};
   vkCmdBeginRendering(commands, &rendering);
   vkCmdSetViewport(commands, 0, 1, &viewport);
   vkCmdSetScissor(commands, 0, 1, &area);
   vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, sphere_pipeline_);
-  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, sphere_layout_, 0, 1, &sphere_set_.handle, 0, nullptr);
+  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, sphere_layout_, 0, 1, &sphere_set_.handle, 0,
+                          nullptr);
   vkCmdPushConstants(commands, sphere_layout_, kSphereStages, 0, sizeof frame.camera, &frame.camera);
   vkCmdBindIndexBuffer(commands, indices_.handle, 0, VK_INDEX_TYPE_UINT32);
   vkCmdDrawIndexed(commands, index_count_, 1, 0, 0, 0);
@@ -150,11 +173,14 @@ std::vector<app::ProbeResult> ConstantSkyProgram::probe(std::span<const app::Pro
   }
   gpu::Specialization constants = specialization(air_variant(context_.scene));
   constants.insert(constants.end(), {static_cast<uint32_t>(context_.settings.integer("phase.detail")), 1u});
-  const gpu::ComputePipeline pipeline = gpu::create_compute_pipeline(device, "04_air/sky_rays.comp", kRayBindings, sizeof(CameraRays), constants);
+  const gpu::ComputePipeline pipeline =
+      gpu::create_compute_pipeline(device, "04_air/sky_rays.comp", kRayBindings, sizeof(CameraRays), constants);
   const gpu::DescriptorSet set = gpu::create_descriptor_set(device, pipeline.set_layout, kRayBindings);
-  const gpu::Buffer air = upload(device, "probe air", std::vector{air_of(context_)}, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
+  const gpu::Buffer air =
+      upload(device, "probe air", std::vector{air_of(context_)}, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
   const gpu::Buffer in = upload(device, "probe rays", items, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-  const gpu::Buffer out = gpu::create_buffer(device, "probe results", in.bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::readback);
+  const gpu::Buffer out =
+      gpu::create_buffer(device, "probe results", in.bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::readback);
   gpu::write_buffer(device, set, 0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, air);
   gpu::write_buffer(device, set, 1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, in);
   gpu::write_buffer(device, set, 2, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, out);
@@ -165,7 +191,8 @@ std::vector<app::ProbeResult> ConstantSkyProgram::probe(std::span<const app::Pro
   });
   const std::span<glm::vec4> results = out.as<glm::vec4>();
   std::vector<app::ProbeResult> answers;
-  for (size_t i = 0; i < rays.size(); ++i) answers.push_back({glm::dvec3(results[2 * i]), glm::dvec3(results[2 * i + 1])});
+  for (size_t i = 0; i < rays.size(); ++i)
+    answers.push_back({glm::dvec3(results[2 * i]), glm::dvec3(results[2 * i + 1])});
   return answers;
 }
 
@@ -176,30 +203,60 @@ void ConstantSkyProgram::make_sphere_pipeline(const gpu::Specialization& constan
   sphere_layout_ = gpu::create_pipeline_layout(device, sphere_set_layout_, kSphereStages, sizeof(CameraRays));
   std::vector<VkSpecializationMapEntry> entries;
   for (uint32_t i = 0; i < constants.size(); ++i) entries.push_back({.constantID = i, .offset = 4 * i, .size = 4});
-  const VkSpecializationInfo special{static_cast<uint32_t>(entries.size()), entries.data(), constants.size() * sizeof(uint32_t), constants.data()};
+  const VkSpecializationInfo special{static_cast<uint32_t>(entries.size()), entries.data(),
+                                     constants.size() * sizeof(uint32_t), constants.data()};
   const gpu::ShaderModule vertex = gpu::create_shader_module(device, "04_air/sky_sphere.vert");
   const gpu::ShaderModule fragment = gpu::create_shader_module(device, "04_air/sky_sphere.frag");
   const auto stage = [&](VkShaderStageFlagBits which, VkShaderModule module) {
-    return VkPipelineShaderStageCreateInfo{.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO, .stage = which, .module = module, .pName = "main", .pSpecializationInfo = &special};
+    return VkPipelineShaderStageCreateInfo{.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                                           .stage = which,
+                                           .module = module,
+                                           .pName = "main",
+                                           .pSpecializationInfo = &special};
   };
   const std::array stages{stage(VK_SHADER_STAGE_VERTEX_BIT, vertex), stage(VK_SHADER_STAGE_FRAGMENT_BIT, fragment)};
-  // No vertex input: the vertex shader reads its vertex from a storage buffer. No culling: the sphere is seen from inside. No depth.
+  // No vertex input: the vertex shader reads its vertex from a storage buffer. No culling: the sphere is seen from
+  // inside. No depth.
   const VkPipelineVertexInputStateCreateInfo input{.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
-  const VkPipelineInputAssemblyStateCreateInfo assembly{.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO, .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST};
-  const VkPipelineViewportStateCreateInfo viewport{.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO, .viewportCount = 1, .scissorCount = 1};
-  const VkPipelineRasterizationStateCreateInfo raster{.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO, .polygonMode = VK_POLYGON_MODE_FILL, .cullMode = VK_CULL_MODE_NONE, .lineWidth = 1.0f};
-  const VkPipelineMultisampleStateCreateInfo samples{.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO, .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT};
+  const VkPipelineInputAssemblyStateCreateInfo assembly{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
+      .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST};
+  const VkPipelineViewportStateCreateInfo viewport{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO, .viewportCount = 1, .scissorCount = 1};
+  const VkPipelineRasterizationStateCreateInfo raster{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
+      .polygonMode = VK_POLYGON_MODE_FILL,
+      .cullMode = VK_CULL_MODE_NONE,
+      .lineWidth = 1.0f};
+  const VkPipelineMultisampleStateCreateInfo samples{.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
+                                                     .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT};
   const VkPipelineColorBlendAttachmentState all_channels{.colorWriteMask = 0xF};
-  const VkPipelineColorBlendStateCreateInfo blend{.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO, .attachmentCount = 1, .pAttachments = &all_channels};
+  const VkPipelineColorBlendStateCreateInfo blend{.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
+                                                  .attachmentCount = 1,
+                                                  .pAttachments = &all_channels};
   const std::array dynamic_states{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
-  const VkPipelineDynamicStateCreateInfo dynamic{.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO, .dynamicStateCount = static_cast<uint32_t>(dynamic_states.size()), .pDynamicStates = dynamic_states.data()};
+  const VkPipelineDynamicStateCreateInfo dynamic{.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
+                                                 .dynamicStateCount = static_cast<uint32_t>(dynamic_states.size()),
+                                                 .pDynamicStates = dynamic_states.data()};
   const VkFormat format = VK_FORMAT_R32G32B32A32_SFLOAT;
-  const VkPipelineRenderingCreateInfo rendering{.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO, .colorAttachmentCount = 1, .pColorAttachmentFormats = &format};
-  const VkGraphicsPipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO, .pNext = &rendering, .stageCount = static_cast<uint32_t>(stages.size()),
-                                          .pStages = stages.data(), .pVertexInputState = &input, .pInputAssemblyState = &assembly, .pViewportState = &viewport,
-                                          .pRasterizationState = &raster, .pMultisampleState = &samples, .pColorBlendState = &blend, .pDynamicState = &dynamic, .layout = sphere_layout_};
+  const VkPipelineRenderingCreateInfo rendering{.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
+                                                .colorAttachmentCount = 1,
+                                                .pColorAttachmentFormats = &format};
+  const VkGraphicsPipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
+                                          .pNext = &rendering,
+                                          .stageCount = static_cast<uint32_t>(stages.size()),
+                                          .pStages = stages.data(),
+                                          .pVertexInputState = &input,
+                                          .pInputAssemblyState = &assembly,
+                                          .pViewportState = &viewport,
+                                          .pRasterizationState = &raster,
+                                          .pMultisampleState = &samples,
+                                          .pColorBlendState = &blend,
+                                          .pDynamicState = &dynamic,
+                                          .layout = sphere_layout_};
   VkPipeline handle = VK_NULL_HANDLE;
-  gpu::check(vkCreateGraphicsPipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &handle), "vkCreateGraphicsPipelines");
+  gpu::check(vkCreateGraphicsPipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &handle),
+             "vkCreateGraphicsPipelines");
   sphere_pipeline_ = gpu::PipelineHandle(device, handle);
 }
 // [/pipeline]

@@ -22,11 +22,11 @@ class ConstantSkyProgram : public app::Program {
   const app::Context context_;
   bool per_vertex_ = false;
   uint32_t index_count_ = 0;
-  gpu::Buffer atmosphere_;   // interop::Atmosphere, written by each frame
-  gpu::Buffer directions_;   // vec4 per vertex
-  gpu::Buffer colours_;      // vec4 per vertex; only with sky.method = per_vertex
+  gpu::Buffer atmosphere_;  // interop::Atmosphere, written by each frame
+  gpu::Buffer directions_;  // vec4 per vertex
+  gpu::Buffer colours_;     // vec4 per vertex; only with sky.method = per_vertex
   gpu::Buffer indices_;
-  gpu::Image sky_;           // what the sphere is drawn into; the target is a storage image and no attachment
+  gpu::Image sky_;  // what the sphere is drawn into; the target is a storage image and no attachment
   gpu::ComputePipeline colour_pipeline_, finish_pipeline_;
   gpu::DescriptorSet colour_set_, sphere_set_, finish_set_;
   gpu::SetLayout sphere_set_layout_;

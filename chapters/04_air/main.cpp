@@ -1,5 +1,5 @@
-// Chapter 04, air: what scatters and absorbs, how much and where to; and the first sky one would draw with it: air of one
-// density everywhere, in closed form, on the triangles of a sky sphere.
+// Chapter 04, air: what scatters and absorbs, how much and where to; and the first sky one would draw with it: air of
+// one density everywhere, in closed form, on the triangles of a sky sphere.
 #include "chapters/02_window/window.hpp"
 #include "chapters/04_air/constant_sky.hpp"
 
@@ -12,7 +12,8 @@ int main(int argc, char** argv) {
       .name = "04_air",
       .title = "Air",
       .whats_new = "Coefficients and phase functions of air; a sky of constant density on a sky sphere.",
-      .try_next = "./welkin run 04 --scene sunset   (and see what is wrong with it), then ./welkin run 05 --scene sunset",
+      .try_next =
+          "./welkin run 04 --scene sunset   (and see what is wrong with it), then ./welkin run 05 --scene sunset",
       .sky = true,
       // [knobs]
       .knobs = {{.name = "sky.method",
@@ -30,7 +31,8 @@ int main(int argc, char** argv) {
                  .ladder = {0, 1, 2, 3, 4},
                  .rebuilds = true},
                 {.name = "phase.detail",
-                 .meaning = "phase functions: none; of the molecules; and Henyey-Greenstein's of the aerosol; and the scene's; and the molecules' anisotropy",
+                 .meaning = "phase functions: none; of the molecules; and Henyey-Greenstein's of the aerosol; and the "
+                            "scene's; and the molecules' anisotropy",
                  .initial = 3,
                  .choices = {"isotropic", "rayleigh", "henyey_greenstein", "scene", "anisotropic"},
                  .ladder = {0, 1, 2, 3, 4},

@@ -1,5 +1,5 @@
-// The phase functions of shaders/04_air/phase.glsl in double, written from the printed formulas and sharing no text with
-// the shader: what the shader is tested against. nu: cosine between the directions of propagation. Units: 1/sr.
+// The phase functions of shaders/04_air/phase.glsl in double, written from the printed formulas and sharing no text
+// with the shader: what the shader is tested against. nu: cosine between the directions of propagation. Units: 1/sr.
 #pragma once
 
 #include <cmath>
@@ -18,7 +18,8 @@ inline double rayleigh_anisotropic(double nu, double rho) {
 
 // From 1 - nu, because in double too 1 + g^2 - 2 g nu loses what a float input would tell apart.
 inline double henyey_greenstein(double one_minus_nu, double g) {
-  return 0.25 / std::numbers::pi * (1.0 - g) * (1.0 + g) / std::pow((1.0 - g) * (1.0 - g) + 2.0 * g * one_minus_nu, 1.5);
+  return 0.25 / std::numbers::pi * (1.0 - g) * (1.0 + g) /
+         std::pow((1.0 - g) * (1.0 - g) + 2.0 * g * one_minus_nu, 1.5);
 }
 
 inline double draine(double one_minus_nu, double g, double alpha) {
@@ -33,7 +34,8 @@ inline double cornette_shanks(double one_minus_nu, double g) {
 }
 
 inline double double_hg(double one_minus_nu, double g, double second_g, double second_weight) {
-  return (1.0 - second_weight) * henyey_greenstein(one_minus_nu, g) + second_weight * henyey_greenstein(one_minus_nu, second_g);
+  return (1.0 - second_weight) * henyey_greenstein(one_minus_nu, g) +
+         second_weight * henyey_greenstein(one_minus_nu, second_g);
 }
 
 inline double droplet(double one_minus_nu, double diameter_um) {

@@ -1,11 +1,10 @@
 // Reading the sky sphere. See sky_sphere.hpp.
 #include "chapters/04_air/sky_sphere.hpp"
 
-#include <glm/geometric.hpp>
-#include <glm/vec3.hpp>
-
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
 #include <map>
 #include <sstream>
 
@@ -20,7 +19,8 @@ namespace {
 
 constexpr size_t kLargestFile = 16 << 20;
 constexpr size_t kMostVertices = 200'000;
-constexpr const char* kAccepted = "accepted is an OBJ file with the triangles or polygons of a sphere around the origin";
+constexpr const char* kAccepted =
+    "accepted is an OBJ file with the triangles or polygons of a sphere around the origin";
 
 std::string first_line(std::string text) {
   text.resize(std::min(text.find_first_of("\r\n"), text.size()));
@@ -49,7 +49,8 @@ SkySphere load_sky_sphere(const std::filesystem::path& file) {
     const glm::dvec3 position(v[0], v[1], v[2]);
     const double length = glm::length(position);
     if (!std::isfinite(length) || length < 1e-6)
-      fail("sky sphere {}: vertex {} is ({}, {}, {}), which is no direction; {}", name, i + 1, v[0], v[1], v[2], kAccepted);
+      fail("sky sphere {}: vertex {} is ({}, {}, {}), which is no direction; {}", name, i + 1, v[0], v[1], v[2],
+           kAccepted);
     sphere.directions.emplace_back(position / length, 0.0);
   }
 
@@ -59,7 +60,8 @@ SkySphere load_sky_sphere(const std::filesystem::path& file) {
     size_t first = 0;
     for (const size_t corner_count : shape.mesh.num_face_vertices) {
       if (corner_count < 3 || first + corner_count > corners.size())
-        fail("sky sphere {}: a face of shape '{}' has fewer than 3 or more than 255 corners", name, first_line(shape.name));
+        fail("sky sphere {}: a face of shape '{}' has fewer than 3 or more than 255 corners", name,
+             first_line(shape.name));
       for (size_t k = 0; k < corner_count; ++k) {
         const int index = corners[first + k].vertex_index;
         if (index < 0 || static_cast<size_t>(index) >= count)
@@ -67,14 +69,18 @@ SkySphere load_sky_sphere(const std::filesystem::path& file) {
         used[index] = true;
       }
       for (size_t k = 2; k < corner_count; ++k)
-        for (const size_t corner : {size_t{0}, k - 1, k}) sphere.indices.push_back(static_cast<uint32_t>(corners[first + corner].vertex_index));
+        for (const size_t corner : {size_t{0}, k - 1, k})
+          sphere.indices.push_back(static_cast<uint32_t>(corners[first + corner].vertex_index));
       first += corner_count;
     }
-    if (first != corners.size()) fail("sky sphere {}: a face of shape '{}' has more than 255 corners", name, first_line(shape.name));
+    if (first != corners.size())
+      fail("sky sphere {}: a face of shape '{}' has more than 255 corners", name, first_line(shape.name));
   }
   if (sphere.indices.empty()) fail("sky sphere {}: no face in it; {}", name, kAccepted);
   for (size_t i = 0; i < count; ++i)
-    if (!used[i]) fail("sky sphere {}: vertex {} belongs to no face: the file is cut off, or holds more than a sphere", name, i + 1);
+    if (!used[i])
+      fail("sky sphere {}: vertex {} belongs to no face: the file is cut off, or holds more than a sphere", name,
+           i + 1);
   return sphere;
 }
 // [/load]

@@ -1,10 +1,10 @@
-// The sky sphere: triangles around the eye, loaded from an OBJ file. Only directions matter, so vertices become unit vectors.
+// The sky sphere: triangles around the eye, loaded from an OBJ file. Only directions matter, so vertices become unit
+// vectors.
 #pragma once
-
-#include <glm/vec4.hpp>
 
 #include <cstdint>
 #include <filesystem>
+#include <glm/vec4.hpp>
 #include <vector>
 
 namespace welkin {

@@ -1,5 +1,6 @@
-// Chapter 05, single scattering: sunlight that is scattered once on its way to the eye. For every pixel a march along the
-// view ray; at each of its samples a march towards the sun; the planet's shadow, ozone, the ground and the sun's disc.
+// Chapter 05, single scattering: sunlight that is scattered once on its way to the eye. For every pixel a march along
+// the view ray; at each of its samples a march towards the sun; the planet's shadow, ozone, the ground and the sun's
+// disc.
 #include "chapters/02_window/window.hpp"
 #include "chapters/05_single_scattering/single_scattering.hpp"
 
@@ -16,7 +17,8 @@ int main(int argc, char** argv) {
       .sky = true,
       .knobs = march_knobs(),
       .reference = {{"view.steps", "512"}, {"light.steps", "64"}, {"rule", "adapted"}},
-      .standard_views = {{"noon", "horizon"}, {"sunset", "sun"}, {"twilight", "glow"}, {"orbit", "limb"}, {"alien", "horizon"}},
+      .standard_views =
+          {{"noon", "horizon"}, {"sunset", "sun"}, {"twilight", "glow"}, {"orbit", "limb"}, {"alien", "horizon"}},
       .window = open_window_system,
       .make = [](const app::Context& context) { return std::make_unique<SingleScattering>(context); }};
   return app::run(argc, argv, chapter);

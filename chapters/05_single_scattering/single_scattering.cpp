@@ -1,12 +1,11 @@
 // The march's passes on the device. See single_scattering.hpp and docs/chapters/05_single_scattering.md.
 #include "chapters/05_single_scattering/single_scattering.hpp"
 
-#include <glm/geometric.hpp>
-#include <glm/trigonometric.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
 
 #include "shaders/interop/camera.h"
 
@@ -31,9 +30,29 @@ struct ProbePush {
 // [knobs]
 // The product of the largest counts stays below 65,535: a software driver ends loops there, without a word.
 std::vector<Knob> march_knobs() {
-  return {{.name = "view.steps", .unit = "steps", .meaning = "samples along the view ray", .minimum = 1, .maximum = 512, .initial = 32, .integer = true, .ladder = {8, 16, 32, 64, 128}},
-          {.name = "light.steps", .unit = "steps", .meaning = "samples along each path to the sun (the adapted rule has a closed form instead)", .minimum = 1, .maximum = 120, .initial = 8, .integer = true, .ladder = {4, 8, 16}, .rebuilds = true},
-          {.name = "rule", .meaning = "where the samples sit and what they weigh", .initial = kRuleAdapted, .choices = {"left", "midpoint", "offset_0.3", "nonuniform", "gauss_legendre", "adapted"}, .ladder = {0, 1, 2, 3, 4, 5}, .rebuilds = true}};
+  return {{.name = "view.steps",
+           .unit = "steps",
+           .meaning = "samples along the view ray",
+           .minimum = 1,
+           .maximum = 512,
+           .initial = 32,
+           .integer = true,
+           .ladder = {8, 16, 32, 64, 128}},
+          {.name = "light.steps",
+           .unit = "steps",
+           .meaning = "samples along each path to the sun (the adapted rule has a closed form instead)",
+           .minimum = 1,
+           .maximum = 120,
+           .initial = 8,
+           .integer = true,
+           .ladder = {4, 8, 16},
+           .rebuilds = true},
+          {.name = "rule",
+           .meaning = "where the samples sit and what they weigh",
+           .initial = kRuleAdapted,
+           .choices = {"left", "midpoint", "offset_0.3", "nonuniform", "gauss_legendre", "adapted"},
+           .ladder = {0, 1, 2, 3, 4, 5},
+           .rebuilds = true}};
 }
 // [/knobs]
 
@@ -62,7 +81,8 @@ MarchRay march_ray(const app::ProbeRay& ray, const Planet& planet) {
 SingleScattering::SingleScattering(const app::Context& context)
     : context_(context),
       air_(gpu::create_buffer(context.device, "atmosphere", sizeof(interop::Atmosphere),
-                              VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Where::device)) {
+                              VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                              gpu::Where::device)) {
   rebuild();
 }
 
@@ -76,19 +96,22 @@ gpu::Specialization SingleScattering::variant() const {
 }
 
 void SingleScattering::rebuild() {
-  image_ = gpu::create_compute_pipeline(context_.device, "05_single_scattering/image.comp", {{0, kUniform}, {1, kImage}}, sizeof(ImagePush), variant());
+  image_ = gpu::create_compute_pipeline(context_.device, "05_single_scattering/image.comp",
+                                        {{0, kUniform}, {1, kImage}}, sizeof(ImagePush), variant());
   if (image_set_.handle != VK_NULL_HANDLE) return;
   image_set_ = gpu::create_descriptor_set(context_.device, image_.set_layout, image_.bindings);
   gpu::write_buffer(context_.device, image_set_, 0, kUniform, air_);
 }
 // [/rebuild]
 
-void SingleScattering::set_target(const gpu::Image& target) { gpu::write_storage_image(context_.device, image_set_, 1, target); }
+void SingleScattering::set_target(const gpu::Image& target) {
+  gpu::write_storage_image(context_.device, image_set_, 1, target);
+}
 
 // Writes the atmosphere into its block. Earlier frames may still read it: their reads come first.
 void SingleScattering::update_air(VkCommandBuffer commands) const {
   interop::Atmosphere air = make_atmosphere(context_.scene);
-  if (context_.inject == "wrong-constant") air.rayleigh.x *= 1.1f;
+  if (context_.inject == "wrong-constant") air.rayleigh_scattering.x *= 1.1f;
   gpu::buffer_barrier(commands, air_.handle, {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT}, gpu::kUpdate);
   vkCmdUpdateBuffer(commands, air_.handle, 0, sizeof air, &air);
   gpu::buffer_barrier(commands, air_.handle, gpu::kUpdate, gpu::kUniformRead);
@@ -107,15 +130,18 @@ void SingleScattering::draw(const app::Frame& frame) {
 
 std::vector<app::ProbeResult> SingleScattering::probe(std::span<const app::ProbeRay> rays) {
   const gpu::Device& device = context_.device;
-  const gpu::ComputePipeline pipeline = gpu::create_compute_pipeline(
-      device, "05_single_scattering/probe.comp", {{0, kUniform}, {1, kStorage}, {2, kStorage}}, sizeof(ProbePush), variant());
+  const gpu::ComputePipeline pipeline =
+      gpu::create_compute_pipeline(device, "05_single_scattering/probe.comp",
+                                   {{0, kUniform}, {1, kStorage}, {2, kStorage}}, sizeof(ProbePush), variant());
   const gpu::DescriptorSet set = gpu::create_descriptor_set(device, pipeline.set_layout, pipeline.bindings);
   const gpu::CommandPool pool = gpu::create_command_pool(device);
   // A batch at a time: a million rays fit any device's largest storage buffer many times over.
   constexpr size_t kBatch = 1 << 16;
   const size_t room = std::min(kBatch, rays.size());
-  const gpu::Buffer in = gpu::create_buffer(device, "rays", room * sizeof(MarchRay), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::upload);
-  const gpu::Buffer out = gpu::create_buffer(device, "results", room * 2 * sizeof(glm::vec4), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::readback);
+  const gpu::Buffer in = gpu::create_buffer(device, "rays", room * sizeof(MarchRay), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                                            gpu::Where::upload);
+  const gpu::Buffer out = gpu::create_buffer(device, "results", room * 2 * sizeof(glm::vec4),
+                                             VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::readback);
   gpu::write_buffer(device, set, 0, kUniform, air_);
   gpu::write_buffer(device, set, 1, kStorage, in);
   gpu::write_buffer(device, set, 2, kStorage, out);

@@ -1,5 +1,5 @@
-// From the linear picture to 8 bits: a light meter, a tone curve, the screen's curve, dithering. Chapters from here on show
-// their pictures through it.
+// From the linear picture to 8 bits: a light meter, a tone curve, the screen's curve, dithering. Chapters from here on
+// show their pictures through it.
 //
 // Three passes: "histogram" counts log2 luminance, "exposure" turns the counts into one number and follows it in time,
 // "display" draws. With an exposure set by hand the first two do not exist, nor do their buffers.
@@ -28,7 +28,8 @@ struct ExposureState {
   uint32_t measured;  // samples that had a logarithm
 };
 
-// Share of the way to a target that is gone after `seconds`: 1 - exp(-seconds / tau), without cancellation; 1 if tau is 0.
+// Share of the way to a target that is gone after `seconds`: 1 - exp(-seconds / tau), without cancellation; 1 if tau is
+// 0.
 double adapted_share(double seconds, double tau_s);
 
 class AutoDisplay : public app::DisplaySystem {

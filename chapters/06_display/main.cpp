@@ -1,5 +1,5 @@
-// Chapter 06, display: the sky of chapter 05 seen through a light meter, a tone curve and a dither. The light is the same;
-// what a screen makes of it is decided here.
+// Chapter 06, display: the sky of chapter 05 seen through a light meter, a tone curve and a dither. The light is the
+// same; what a screen makes of it is decided here.
 #include "chapters/02_window/window.hpp"
 #include "chapters/05_single_scattering/single_scattering.hpp"
 #include "chapters/06_display/auto_display.hpp"
@@ -17,7 +17,8 @@ int main(int argc, char** argv) {
       .sky = true,
       .knobs = joined(march_knobs(), display_knobs()),
       .reference = {{"view.steps", "512"}, {"light.steps", "64"}, {"rule", "adapted"}},
-      .standard_views = {{"noon", "horizon"}, {"sunset", "sun"}, {"twilight", "glow"}, {"orbit", "limb"}, {"alien", "horizon"}},
+      .standard_views =
+          {{"noon", "horizon"}, {"sunset", "sun"}, {"twilight", "glow"}, {"orbit", "limb"}, {"alien", "horizon"}},
       .window = open_window_system,
       .make = [](const app::Context& context) { return std::make_unique<SingleScattering>(context); },
       .make_display = make_display};

@@ -33,12 +33,45 @@ uint32_t groups_over(VkExtent2D size) { return ((size.width + 7) / 8) * ((size.h
 
 // [knobs]
 std::vector<Knob> path_knobs() {
-  return {{.name = "samples", .unit = "paths", .meaning = "paths per pixel and frame; frames add up", .minimum = 1, .maximum = 4096, .initial = 4, .integer = true, .ladder = {1, 4, 16, 64}},
-          {.name = "orders", .meaning = "scatterings and ground reflections at most; 0: all", .minimum = 0, .maximum = 64, .initial = 0, .integer = true, .ladder = {1, 2, 3, 5, 0}},
-          {.name = "tracking", .meaning = "how free flights are drawn and the way to the sun is weighed", .initial = 3, .choices = {"naive", "shells", "exponential", "closed_form"}, .ladder = {0, 1, 2, 3}, .rebuilds = true},
-          {.name = "spectral", .meaning = "what one path carries: one channel, or all three weighted by a hero's", .initial = 1, .choices = {"one_channel", "hero"}, .ladder = {0, 1}, .rebuilds = true},
-          {.name = "target.standard_error", .meaning = "the picture is done when its mean relative standard error is below; 0: never", .minimum = 0, .maximum = 1, .initial = 0},
-          {.name = "probe.samples", .unit = "paths", .meaning = "paths per ray of a probe", .minimum = 2, .maximum = 1e8, .initial = 4096, .integer = true}};
+  return {{.name = "samples",
+           .unit = "paths",
+           .meaning = "paths per pixel and frame; frames add up",
+           .minimum = 1,
+           .maximum = 4096,
+           .initial = 4,
+           .integer = true,
+           .ladder = {1, 4, 16, 64}},
+          {.name = "orders",
+           .meaning = "scatterings and ground reflections at most; 0: all",
+           .minimum = 0,
+           .maximum = 64,
+           .initial = 0,
+           .integer = true,
+           .ladder = {1, 2, 3, 5, 0}},
+          {.name = "tracking",
+           .meaning = "how free flights are drawn and the way to the sun is weighed",
+           .initial = 3,
+           .choices = {"naive", "shells", "exponential", "closed_form"},
+           .ladder = {0, 1, 2, 3},
+           .rebuilds = true},
+          {.name = "spectral",
+           .meaning = "what one path carries: one channel, or all three weighted by a hero's",
+           .initial = 1,
+           .choices = {"one_channel", "hero"},
+           .ladder = {0, 1},
+           .rebuilds = true},
+          {.name = "target.standard_error",
+           .meaning = "the picture is done when its mean relative standard error is below; 0: never",
+           .minimum = 0,
+           .maximum = 1,
+           .initial = 0},
+          {.name = "probe.samples",
+           .unit = "paths",
+           .meaning = "paths per ray of a probe",
+           .minimum = 2,
+           .maximum = 1e8,
+           .initial = 4096,
+           .integer = true}};
 }
 // [/knobs]
 
@@ -53,15 +86,20 @@ Batches batches_of(int samples, int tracking) {
 // [/batches]
 
 app::Truth path_truth() {
-  return {path_knobs(), {{"samples", "64"}}, [](const app::Context& context) { return std::make_unique<GroundTruth>(context); }, 32};
+  return {path_knobs(),
+          {{"samples", "64"}},
+          [](const app::Context& context) { return std::make_unique<GroundTruth>(context); },
+          32};
 }
 
 GroundTruth::GroundTruth(const app::Context& context, bool surfaces)
     : context_(context),
       surfaces_(surfaces),
       air_(gpu::create_buffer(context.device, "atmosphere", sizeof(interop::Atmosphere),
-                              VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Where::device)),
-      unfinished_(gpu::create_buffer(context.device, "unfinished paths", sizeof(uint32_t), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::readback)) {
+                              VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                              gpu::Where::device)),
+      unfinished_(gpu::create_buffer(context.device, "unfinished paths", sizeof(uint32_t),
+                                     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::readback)) {
   unfinished_.as<uint32_t>()[0] = 0;
   rebuild();
 }
@@ -76,13 +114,18 @@ gpu::Specialization GroundTruth::variant() const {
 
 // [pipelines]
 void GroundTruth::rebuild() {
-  std::vector<gpu::Binding> trace{{0, kUniform}, {1, kStorage}, {2, kStorage}, {3, kStorage}}, resolve{{0, kUniform}, {1, kStorage}, {2, kImage}, {3, kStorage}};
+  std::vector<gpu::Binding> trace{{0, kUniform}, {1, kStorage}, {2, kStorage}, {3, kStorage}},
+      resolve{{0, kUniform}, {1, kStorage}, {2, kImage}, {3, kStorage}};
   if (surfaces_) {
     trace.insert(trace.end(), {{4, kImage}, {5, kImage}});
     resolve.push_back({4, kImage});
   }
-  trace_ = gpu::create_compute_pipeline(context_.device, surfaces_ ? "07_ground_truth/trace_surfaces.comp" : "07_ground_truth/trace.comp", trace, sizeof(TracePush), variant());
-  resolve_ = gpu::create_compute_pipeline(context_.device, surfaces_ ? "07_ground_truth/resolve_surfaces.comp" : "07_ground_truth/resolve.comp", resolve, sizeof(ResolvePush), variant());
+  trace_ = gpu::create_compute_pipeline(
+      context_.device, surfaces_ ? "07_ground_truth/trace_surfaces.comp" : "07_ground_truth/trace.comp", trace,
+      sizeof(TracePush), variant());
+  resolve_ = gpu::create_compute_pipeline(
+      context_.device, surfaces_ ? "07_ground_truth/resolve_surfaces.comp" : "07_ground_truth/resolve.comp", resolve,
+      sizeof(ResolvePush), variant());
   if (trace_sets_[0].handle != VK_NULL_HANDLE) return;
   for (int i = 0; i < 2; ++i) {
     trace_sets_[i] = gpu::create_descriptor_set(context_.device, trace_.set_layout, trace_.bindings);
@@ -108,8 +151,10 @@ void GroundTruth::set_target(const gpu::Image& target) {
     size_ = target.size;
     for (gpu::Buffer& sums : sums_) sums = {};  // the old ones go before the new ones come
     for (gpu::Buffer& sums : sums_)
-      sums = gpu::create_buffer(context_.device, "path sums", kSumBytes * size_.width * size_.height, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::device);
-    groups_ = gpu::create_buffer(context_.device, "standard errors", groups_over(size_) * sizeof(glm::vec4), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::readback);
+      sums = gpu::create_buffer(context_.device, "path sums", kSumBytes * size_.width * size_.height,
+                                VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::device);
+    groups_ = gpu::create_buffer(context_.device, "standard errors", groups_over(size_) * sizeof(glm::vec4),
+                                 VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::readback);
     std::memset(groups_.mapped, 0, groups_.bytes);
     batches_ = 0;
   }
@@ -125,7 +170,7 @@ void GroundTruth::set_target(const gpu::Image& target) {
 // Writes the atmosphere into its block. Earlier frames may still read it: their reads come first.
 void GroundTruth::update_air(VkCommandBuffer commands) const {
   interop::Atmosphere air = make_atmosphere(context_.scene);
-  if (context_.inject == "wrong-constant") air.rayleigh.x *= 1.1f;
+  if (context_.inject == "wrong-constant") air.rayleigh_scattering.x *= 1.1f;
   constexpr gpu::Use written{VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT};
   gpu::buffer_barrier(commands, air_.handle, {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT}, written);
   vkCmdUpdateBuffer(commands, air_.handle, 0, sizeof air, &air);
@@ -135,11 +180,13 @@ void GroundTruth::update_air(VkCommandBuffer commands) const {
 // [changed]
 bool GroundTruth::changed(const app::Frame& frame) {
   Subject now{frame.camera, make_atmosphere(context_.scene), {}};
-  now.camera.forward.w = 0.0f;  // time and frame number: the same picture
-  now.camera.size.w = 0;
+  now.camera.time_s = 0.0f;  // time and frame number: the same picture
+  now.camera.frame = 0;
   for (const Knob& knob : context_.settings.knobs())
-    if (knob.name == "samples" || knob.name == "orders" || knob.name == "tracking" || knob.name == "spectral") now.settings.push_back(context_.settings.number(knob.name));
-  const bool same = batches_ > 0 && frame.index > 0 && std::memcmp(&now.camera, &subject_.camera, sizeof now.camera) == 0 &&
+    if (knob.name == "samples" || knob.name == "orders" || knob.name == "tracking" || knob.name == "spectral")
+      now.settings.push_back(context_.settings.number(knob.name));
+  const bool same = batches_ > 0 && frame.index > 0 &&
+                    std::memcmp(&now.camera, &subject_.camera, sizeof now.camera) == 0 &&
                     std::memcmp(&now.air, &subject_.air, sizeof now.air) == 0 && now.settings == subject_.settings;
   subject_ = std::move(now);
   return !same;
@@ -176,9 +223,11 @@ void GroundTruth::draw(const app::Frame& frame) {
     for (int i = 0; i < plan.count; ++i) {
       gpu::buffer_barrier(frame.commands, sums_[newest_].handle, gpu::kComputeWrite, gpu::kComputeRead);
       gpu::buffer_barrier(frame.commands, sums_[1 - newest_].handle, earlier_read, gpu::kComputeWrite);
-      constexpr gpu::Use counted{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT};
+      constexpr gpu::Use counted{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                                 VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT};
       gpu::buffer_barrier(frame.commands, unfinished_.handle, counted, counted);
-      const TracePush push{frame.camera, static_cast<int32_t>(samples_ & 0x7fffffff), plan.samples, settings.integer("orders"), batches_ == 0};
+      const TracePush push{frame.camera, static_cast<int32_t>(samples_ & 0x7fffffff), plan.samples,
+                           settings.integer("orders"), batches_ == 0};
       gpu::dispatch_over(frame.commands, trace_, trace_sets_[newest_], push, size_);
       newest_ = 1 - newest_;
       ++batches_;
@@ -200,7 +249,8 @@ void GroundTruth::draw(const app::Frame& frame) {
 std::string GroundTruth::explain() const {
   const double error = relative_error();
   std::string text = fmt::format("paths:\n  {} per pixel, in {} batches\n", samples_, batches_);
-  text += error > 0.0 ? fmt::format("  mean relative standard error {:.3g}{}\n", error, done_ ? ": the target is reached, no more paths" : "")
+  text += error > 0.0 ? fmt::format("  mean relative standard error {:.3g}{}\n", error,
+                                    done_ ? ": the target is reached, no more paths" : "")
                       : fmt::format("  standard error not known from fewer than {} batches\n", kBatchesToJudge);
   text += fmt::format("  {} cut by the driver\n", unfinished_.as<uint32_t>()[0]);
   text += fmt::format("  {}\n", surfaces_ ? "first surfaces: from images" : "first surfaces: none, no image is read");

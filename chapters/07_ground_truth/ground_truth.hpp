@@ -1,5 +1,5 @@
-// Chapter 07's program: a path tracer for pictures that accumulate and for single rays. Later chapters measure themselves
-// against it: path_truth().
+// Chapter 07's program: a path tracer for pictures that accumulate and for single rays. Later chapters measure
+// themselves against it: path_truth().
 #pragma once
 
 #include <array>
@@ -16,8 +16,8 @@ std::vector<Knob> path_knobs();
 // What a later chapter says it is measured against: 2048 paths a pixel.
 app::Truth path_truth();
 
-// Batches a number of samples is cut into, so that no invocation's loops come near what a software driver allows, and the
-// samples of each.
+// Batches a number of samples is cut into, so that no invocation's loops come near what a software driver allows, and
+// the samples of each.
 struct Batches {
   int count = 1;
   int samples = 1;
@@ -27,14 +27,15 @@ Batches batches_of(int samples, int tracking);
 // What rays from the eye meet before the smooth planet, pixel by pixel: rgba32f storage images of the picture's size in
 // layout GENERAL, whose writes are visible to compute when draw() is called. They must outlive what is drawn with them.
 struct FirstSurfaces {
-  const gpu::Image* normals = nullptr;  // unit normals in the eye's local frame; w: distance along the ray in km, 0: none
+  const gpu::Image* normals =
+      nullptr;  // unit normals in the eye's local frame; w: distance along the ray in km, 0: none
   const gpu::Image* albedos = nullptr;  // share of light reflected, evenly to all sides, per channel
 };
 
 class GroundTruth : public app::Program {
  public:
-  // With `surfaces`, set_surfaces() is called before the first draw and whenever the images are made anew; what is on them
-  // may change only with the camera, which starts the picture again.
+  // With `surfaces`, set_surfaces() is called before the first draw and whenever the images are made anew; what is on
+  // them may change only with the camera, which starts the picture again.
   explicit GroundTruth(const app::Context& context, bool surfaces = false);
   void set_surfaces(const FirstSurfaces& surfaces);
   void set_target(const gpu::Image& target) override;
@@ -57,18 +58,18 @@ class GroundTruth : public app::Program {
 
   const app::Context context_;
   const bool surfaces_;
-  gpu::Buffer air_;         // the uniform block of the atmosphere
-  gpu::Buffer unfinished_;  // one counter
+  gpu::Buffer air_;                  // the uniform block of the atmosphere
+  gpu::Buffer unfinished_;           // one counter
   std::array<gpu::Buffer, 2> sums_;  // read one, write the other
-  gpu::Buffer groups_;      // standard error and luminance per workgroup, read by the host a frame later
+  gpu::Buffer groups_;               // standard error and luminance per workgroup, read by the host a frame later
   gpu::ComputePipeline trace_, resolve_;
   std::array<gpu::DescriptorSet, 2> trace_sets_, resolve_sets_;  // [i]: reads sums_[i]
   Subject subject_;
   VkExtent2D size_{};
-  int newest_ = 0;         // of sums_
-  int batches_ = 0;        // in them
+  int newest_ = 0;   // of sums_
+  int batches_ = 0;  // in them
   int64_t samples_ = 0;
-  int accumulation_ = 0;   // counts restarts
+  int accumulation_ = 0;  // counts restarts
   bool done_ = false;
 };
 

@@ -1,5 +1,5 @@
-// Chapter 07, ground truth: light followed along random paths, all orders of scattering, nothing approximated but the number of
-// paths. Every later method is measured against it.
+// Chapter 07, ground truth: light followed along random paths, all orders of scattering, nothing approximated but the
+// number of paths. Every later method is measured against it.
 #include "chapters/02_window/window.hpp"
 #include "chapters/06_display/auto_display.hpp"
 #include "chapters/07_ground_truth/ground_truth.hpp"
@@ -18,7 +18,8 @@ int main(int argc, char** argv) {
       .stochastic = true,
       .knobs = joined(path_knobs(), display_knobs()),
       .reference = {{"samples", "4096"}, {"orders", "0"}, {"tracking", "closed_form"}, {"spectral", "hero"}},
-      .standard_views = {{"noon", "horizon"}, {"sunset", "sun"}, {"twilight", "glow"}, {"orbit", "limb"}, {"alien", "horizon"}},
+      .standard_views =
+          {{"noon", "horizon"}, {"sunset", "sun"}, {"twilight", "glow"}, {"orbit", "limb"}, {"alien", "horizon"}},
       .window = open_window_system,
       .make = [](const app::Context& context) { return std::make_unique<GroundTruth>(context); },
       .make_display = make_display};

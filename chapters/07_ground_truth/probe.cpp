@@ -1,8 +1,7 @@
 // Single rays: paths are spread over (ray, block), summed in float32 within a block of a few and in double beyond.
+#include <algorithm>
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
-
-#include <algorithm>
 
 #include "chapters/05_single_scattering/single_scattering.hpp"
 #include "chapters/07_ground_truth/ground_truth.hpp"
@@ -30,13 +29,17 @@ struct Sum {
 std::vector<app::ProbeResult> GroundTruth::probe(std::span<const app::ProbeRay> rays) {
   const gpu::Device& device = context_.device;
   const Settings& settings = context_.settings;
-  const gpu::ComputePipeline pipeline = gpu::create_compute_pipeline(device, "07_ground_truth/probe.comp", {{0, kUniform}, {1, kStorage}, {2, kStorage}}, sizeof(ProbePush), variant());
+  const gpu::ComputePipeline pipeline =
+      gpu::create_compute_pipeline(device, "07_ground_truth/probe.comp", {{0, kUniform}, {1, kStorage}, {2, kStorage}},
+                                   sizeof(ProbePush), variant());
   const gpu::DescriptorSet set = gpu::create_descriptor_set(device, pipeline.set_layout, pipeline.bindings);
   const gpu::CommandPool pool = gpu::create_command_pool(device);
   const Batches plan = batches_of(settings.integer("probe.samples"), settings.integer("tracking"));
   const int64_t invocations = std::min<int64_t>(kInvocations, int64_t{plan.count} * static_cast<int64_t>(rays.size()));
-  const gpu::Buffer in = gpu::create_buffer(device, "rays", rays.size() * sizeof(MarchRay), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::upload);
-  const gpu::Buffer out = gpu::create_buffer(device, "results", invocations * 3 * sizeof(glm::vec4), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::readback);
+  const gpu::Buffer in = gpu::create_buffer(device, "rays", rays.size() * sizeof(MarchRay),
+                                            VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::upload);
+  const gpu::Buffer out = gpu::create_buffer(device, "results", invocations * 3 * sizeof(glm::vec4),
+                                             VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::readback);
   gpu::write_buffer(device, set, 0, kUniform, air_);
   gpu::write_buffer(device, set, 1, kStorage, in);
   gpu::write_buffer(device, set, 2, kStorage, out);
@@ -79,7 +82,11 @@ std::vector<app::ProbeResult> GroundTruth::probe(std::span<const app::ProbeRay> 
     results.push_back({mean, sum.transmittance, glm::sqrt(variance / (n - 1.0))});
     unfinished += sum.unfinished;
   }
-  if (unfinished > 0.0) fail("--probe: the driver cut {:g} paths short: radiance would be too low; a tracking with fewer steps is needed (closed_form)", unfinished);
+  if (unfinished > 0.0)
+    fail(
+        "--probe: the driver cut {:g} paths short: radiance would be too low; a tracking with fewer steps is needed "
+        "(closed_form)",
+        unfinished);
   return results;
 }
 // [/probe]

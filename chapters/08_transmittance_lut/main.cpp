@@ -12,13 +12,18 @@ int main(int argc, char** argv) {
       .number = 8,
       .name = "08_transmittance_lut",
       .title = "Transmittance table",
-      .whats_new = "The air towards the sun computed once and looked up; a frame graph that knows what has to run again.",
+      .whats_new =
+          "The air towards the sun computed once and looked up; a frame graph that knows what has to run again.",
       .try_next = "./welkin run 08 --headless --explain   (or: ./welkin compare 05 08)",
       .sky = true,
       .images = {"transmittance"},
       .knobs = joined(table_sky_knobs(), display_knobs()),
-      .reference = {{"view.steps", "512"}, {"rule", "adapted"}, {"transmittance.width", "1024"}, {"transmittance.height", "1024"}},
-      .standard_views = {{"noon", "horizon"}, {"sunset", "sun"}, {"twilight", "glow"}, {"orbit", "limb"}, {"alien", "horizon"}},
+      .reference = {{"view.steps", "512"},
+                    {"rule", "adapted"},
+                    {"transmittance.width", "1024"},
+                    {"transmittance.height", "1024"}},
+      .standard_views =
+          {{"noon", "horizon"}, {"sunset", "sun"}, {"twilight", "glow"}, {"orbit", "limb"}, {"alien", "horizon"}},
       .window = open_window_system,
       .make = [](const app::Context& context) { return std::make_unique<TableSky>(context); },
       .make_display = make_display};

@@ -44,11 +44,14 @@ void TableSky::set_target(const gpu::Image& target) {
   // Between frames the picture is displayed; what it held is not needed.
   picture_ = graph_.add("picture", target, {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT});
   graph_.add({.name = "march",
-              .accesses = {{air_.resource(), gpu::kUniformRead}, {table_.resource(), gpu::kSampledRead}, {picture_, gpu::kComputeWrite}},
-              .record = [this](const app::Frame& frame) {
-                const ImagePush push{frame.camera, context_.settings.integer("view.steps"), {}};
-                gpu::dispatch_over(frame.commands, image_, image_set_, push, frame.target.size);
-              },
+              .accesses = {{air_.resource(), gpu::kUniformRead},
+                           {table_.resource(), gpu::kSampledRead},
+                           {picture_, gpu::kComputeWrite}},
+              .record =
+                  [this](const app::Frame& frame) {
+                    const ImagePush push{frame.camera, context_.settings.integer("view.steps"), {}};
+                    gpu::dispatch_over(frame.commands, image_, image_set_, push, frame.target.size);
+                  },
               .changed = [](const app::Frame&) { return true; }});
   graph_.want(picture_);
   graph_.compile();
@@ -71,7 +74,8 @@ void TableSky::rebuild() {
 }
 
 void TableSky::make_pipeline() {
-  image_ = gpu::create_compute_pipeline(context_.device, "08_transmittance_lut/image.comp", {{0, kUniform}, {1, kTable}, {2, kImage}}, sizeof(ImagePush), variant());
+  image_ = gpu::create_compute_pipeline(context_.device, "08_transmittance_lut/image.comp",
+                                        {{0, kUniform}, {1, kTable}, {2, kImage}}, sizeof(ImagePush), variant());
   image_set_ = gpu::create_descriptor_set(context_.device, image_.set_layout, image_.bindings);
   gpu::write_buffer(context_.device, image_set_, 0, kUniform, air_.buffer());
   gpu::write_sampled_image(context_.device, image_set_, 1, table_.image(), table_.sampler());  // it may be another one
@@ -88,10 +92,13 @@ std::vector<app::ProbeResult> TableSky::probe(std::span<const app::ProbeRay> ray
   TransmittanceLut table(context_, graph, air);
   constexpr size_t kBatch = 1 << 16;
   const size_t room = std::min(kBatch, rays.size());
-  const gpu::Buffer in = gpu::create_buffer(device, "rays", room * sizeof(MarchRay), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::upload);
-  const gpu::Buffer out = gpu::create_buffer(device, "results", room * 2 * sizeof(glm::vec4), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::readback);
+  const gpu::Buffer in = gpu::create_buffer(device, "rays", room * sizeof(MarchRay), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                                            gpu::Where::upload);
+  const gpu::Buffer out = gpu::create_buffer(device, "results", room * 2 * sizeof(glm::vec4),
+                                             VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::readback);
   const gpu::ComputePipeline pipeline = gpu::create_compute_pipeline(
-      device, "08_transmittance_lut/probe.comp", {{0, kUniform}, {1, kTable}, {2, kStorage}, {3, kStorage}}, sizeof(ProbePush), variant());
+      device, "08_transmittance_lut/probe.comp", {{0, kUniform}, {1, kTable}, {2, kStorage}, {3, kStorage}},
+      sizeof(ProbePush), variant());
   const gpu::DescriptorSet set = gpu::create_descriptor_set(device, pipeline.set_layout, pipeline.bindings);
   gpu::write_buffer(device, set, 0, kUniform, air.buffer());
   gpu::write_sampled_image(device, set, 1, table.image(), table.sampler());
@@ -101,12 +108,15 @@ std::vector<app::ProbeResult> TableSky::probe(std::span<const app::ProbeRay> ray
   uint32_t count = 0;
   const graph::Resource results = graph.add("results", out);
   graph.add({.name = "probe",
-             .accesses = {{air.resource(), gpu::kUniformRead}, {table.resource(), gpu::kSampledRead}, {results, gpu::kComputeWrite}},
-             .record = [&](const app::Frame& frame) {
-               const ProbePush push{context_.settings.integer("view.steps"), static_cast<int32_t>(count), {}};
-               gpu::dispatch(frame.commands, pipeline, set, push, (count + 63) / 64);
-               gpu::buffer_barrier(frame.commands, out.handle, gpu::kComputeWrite, gpu::kHostRead);
-             },
+             .accesses = {{air.resource(), gpu::kUniformRead},
+                          {table.resource(), gpu::kSampledRead},
+                          {results, gpu::kComputeWrite}},
+             .record =
+                 [&](const app::Frame& frame) {
+                   const ProbePush push{context_.settings.integer("view.steps"), static_cast<int32_t>(count), {}};
+                   gpu::dispatch(frame.commands, pipeline, set, push, (count + 63) / 64);
+                   gpu::buffer_barrier(frame.commands, out.handle, gpu::kComputeWrite, gpu::kHostRead);
+                 },
              .changed = [](const app::Frame&) { return true; }});
   graph.want(results);
   graph.compile();

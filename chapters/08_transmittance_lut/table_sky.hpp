@@ -19,7 +19,9 @@ class TableSky : public app::Program {
   void rebuild() override;
   std::vector<app::ProbeResult> probe(std::span<const app::ProbeRay> rays) override;
   std::string explain() const override { return graph_.explain(); }
-  const gpu::Image* image(const std::string& name) const override { return name == "transmittance" ? &table_.image() : nullptr; }
+  const gpu::Image* image(const std::string& name) const override {
+    return name == "transmittance" ? &table_.image() : nullptr;
+  }
   const graph::Graph& graph() const { return graph_; }
 
  private:

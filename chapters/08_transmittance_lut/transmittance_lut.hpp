@@ -3,9 +3,11 @@
 // A pass that looks transmittance up
 //   1. names air.resource() (gpu::kUniformRead) and table.resource() (gpu::kSampledRead) among its accesses,
 //   2. binds air.buffer() as uniform block and (image(), sampler()) as combined image sampler,
-//   3. begins its specialization constants with table.variant(), and in its shader includes 04_air/variant.glsl, defines
+//   3. begins its specialization constants with table.variant(), and in its shader includes 04_air/variant.glsl,
+//   defines
 //      TRANSMITTANCE_BINDING, includes 08_transmittance_lut/table.glsl; constants of its own begin at 6,
-//   4. on rebuild() is called after the table, and writes the table into its descriptor set again: the image may be another.
+//   4. on rebuild() is called after the table, and writes the table into its descriptor set again: the image may be
+//   another.
 #pragma once
 
 #include <optional>

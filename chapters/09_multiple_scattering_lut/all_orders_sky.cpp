@@ -30,7 +30,10 @@ std::vector<Knob> all_orders_knobs() {
   std::vector<Knob> knobs;
   for (Knob& knob : march_knobs())
     if (knob.name == "view.steps") knobs.push_back(std::move(knob));
-  knobs.push_back({.name = "tables", .meaning = "what a frame computes: only what something changed for, or everything (to see what it costs)", .choices = {"changed", "all"}});
+  knobs.push_back(
+      {.name = "tables",
+       .meaning = "what a frame computes: only what something changed for, or everything (to see what it costs)",
+       .choices = {"changed", "all"}});
   return joined(std::move(knobs), multiple_scattering_knobs());
 }
 
@@ -76,10 +79,11 @@ gpu::ComputePipeline AllOrdersSky::make_pipeline(const Frames& frames, bool prob
     constants = specialization(air_variant(context_.scene));
     constants.insert(constants.end(), {context_.scene.sun.disc, kRuleAdapted, 1u});
   }
-  for (int i = 0; i < (probe ? 2 : 1); ++i) bindings.push_back({static_cast<uint32_t>(bindings.size()), probe ? kStorage : kImage});
+  for (int i = 0; i < (probe ? 2 : 1); ++i)
+    bindings.push_back({static_cast<uint32_t>(bindings.size()), probe ? kStorage : kImage});
   const std::string chapter = frames.table ? "09_multiple_scattering_lut" : "05_single_scattering";
-  return gpu::create_compute_pipeline(context_.device, chapter + (probe ? "/probe.comp" : "/image.comp"), std::move(bindings),
-                                      probe ? sizeof(ProbePush) : sizeof(ImagePush), constants);
+  return gpu::create_compute_pipeline(context_.device, chapter + (probe ? "/probe.comp" : "/image.comp"),
+                                      std::move(bindings), probe ? sizeof(ProbePush) : sizeof(ImagePush), constants);
 }
 
 void AllOrdersSky::rebuild() {
@@ -108,11 +112,13 @@ void AllOrdersSky::set_target(const gpu::Image& target) {
   accesses.push_back({frames.picture, gpu::kComputeWrite});
   frames.graph.add({.name = "march",
                     .accesses = std::move(accesses),
-                    .record = [this](const app::Frame& frame) {
-                      const int table_steps = frames_->table ? context_.settings.integer("multiple_scattering.view_steps") : 0;
-                      const ImagePush push{frame.camera, context_.settings.integer("view.steps"), table_steps, {}};
-                      gpu::dispatch_over(frame.commands, frames_->image, frames_->set, push, frame.target.size);
-                    },
+                    .record =
+                        [this](const app::Frame& frame) {
+                          const int table_steps =
+                              frames_->table ? context_.settings.integer("multiple_scattering.view_steps") : 0;
+                          const ImagePush push{frame.camera, context_.settings.integer("view.steps"), table_steps, {}};
+                          gpu::dispatch_over(frame.commands, frames_->image, frames_->set, push, frame.target.size);
+                        },
                     .changed = [](const app::Frame&) { return true; }});
   frames.graph.want(frames.picture);
   frames.graph.compile();
@@ -124,7 +130,10 @@ void AllOrdersSky::draw(const app::Frame& frame) {
 }
 
 std::string AllOrdersSky::explain() const {
-  return frames_->graph.explain() + (frames_->table ? frames_->table->explain() : "  multiple scattering  off: orders is 1, so there is no table and chapter 05's shader draws\n");
+  return frames_->graph.explain() +
+         (frames_->table
+              ? frames_->table->explain()
+              : "  multiple scattering  off: orders is 1, so there is no table and chapter 05's shader draws\n");
 }
 
 const gpu::Image* AllOrdersSky::image(const std::string& name) const {
@@ -138,8 +147,10 @@ std::vector<app::ProbeResult> AllOrdersSky::probe(std::span<const app::ProbeRay>
   Frames frames(context_);
   constexpr size_t kBatch = 1 << 16;
   const size_t room = std::min(kBatch, rays.size());
-  const gpu::Buffer in = gpu::create_buffer(device, "rays", room * sizeof(MarchRay), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::upload);
-  const gpu::Buffer out = gpu::create_buffer(device, "results", room * 2 * sizeof(glm::vec4), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::readback);
+  const gpu::Buffer in = gpu::create_buffer(device, "rays", room * sizeof(MarchRay), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                                            gpu::Where::upload);
+  const gpu::Buffer out = gpu::create_buffer(device, "results", room * 2 * sizeof(glm::vec4),
+                                             VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::readback);
   const gpu::ComputePipeline pipeline = make_pipeline(frames, true);
   const gpu::DescriptorSet set = gpu::create_descriptor_set(device, pipeline.set_layout, pipeline.bindings);
   const uint32_t slot = frames.write_inputs(device, set);
@@ -152,12 +163,14 @@ std::vector<app::ProbeResult> AllOrdersSky::probe(std::span<const app::ProbeRay>
   accesses.push_back({results, gpu::kComputeWrite});
   frames.graph.add({.name = "probe",
                     .accesses = std::move(accesses),
-                    .record = [&](const app::Frame& frame) {
-                      const int table_steps = frames.table ? context_.settings.integer("multiple_scattering.view_steps") : count;
-                      const ProbePush push{context_.settings.integer("view.steps"), table_steps, count, 0};
-                      gpu::dispatch(frame.commands, pipeline, set, push, static_cast<uint32_t>(count + 63) / 64);
-                      gpu::buffer_barrier(frame.commands, out.handle, gpu::kComputeWrite, gpu::kHostRead);
-                    },
+                    .record =
+                        [&](const app::Frame& frame) {
+                          const int table_steps =
+                              frames.table ? context_.settings.integer("multiple_scattering.view_steps") : count;
+                          const ProbePush push{context_.settings.integer("view.steps"), table_steps, count, 0};
+                          gpu::dispatch(frame.commands, pipeline, set, push, static_cast<uint32_t>(count + 63) / 64);
+                          gpu::buffer_barrier(frame.commands, out.handle, gpu::kComputeWrite, gpu::kHostRead);
+                        },
                     .changed = [](const app::Frame&) { return true; }});
   frames.graph.want(results);
   frames.graph.compile();

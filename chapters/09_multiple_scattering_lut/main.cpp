@@ -18,10 +18,15 @@ int main(int argc, char** argv) {
       .sky = true,
       .images = {"multiple_scattering"},
       .knobs = joined(all_orders_knobs(), display_knobs()),
-      .reference = {{"view.steps", "128"}, {"multiple_scattering.view_steps", "128"}, {"multiple_scattering.size", "64"}, {"multiple_scattering.directions", "256"},
-                    {"multiple_scattering.iterations", "32"}, {"multiple_scattering.steps", "32"}},
+      .reference = {{"view.steps", "128"},
+                    {"multiple_scattering.view_steps", "128"},
+                    {"multiple_scattering.size", "64"},
+                    {"multiple_scattering.directions", "256"},
+                    {"multiple_scattering.iterations", "32"},
+                    {"multiple_scattering.steps", "32"}},
       .truth = path_truth(),
-      .standard_views = {{"noon", "horizon"}, {"sunset", "sun"}, {"twilight", "glow"}, {"orbit", "limb"}, {"alien", "horizon"}},
+      .standard_views =
+          {{"noon", "horizon"}, {"sunset", "sun"}, {"twilight", "glow"}, {"orbit", "limb"}, {"alien", "horizon"}},
       .window = open_window_system,
       .make = [](const app::Context& context) { return std::make_unique<AllOrdersSky>(context); },
       .make_display = make_display};

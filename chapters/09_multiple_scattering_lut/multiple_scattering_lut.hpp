@@ -4,9 +4,11 @@
 //   1. names air.resource() (gpu::kUniformRead) and table.resource() (gpu::kSampledRead) among its accesses,
 //   2. binds air.buffer() as uniform block and (image(), sampler()) as combined image sampler,
 //   3. begins its specialization constants with table.variant(); in its shader declares the sampler, defines
-//      read_multiple_scattering_table(uv) by it, and includes 09_multiple_scattering_lut/variant.glsl, which declares the
-//      block at binding 0 (or declares constants 0 to 6 itself and includes multiple_scattering.glsl); its own begin at 7,
-//   4. on rebuild() is called after the table, and writes the table into its descriptor set again: the image may be another.
+//      read_multiple_scattering_table(uv) by it, and includes 09_multiple_scattering_lut/variant.glsl, which declares
+//      the block at binding 0 (or declares constants 0 to 6 itself and includes multiple_scattering.glsl); its own
+//      begin at 7,
+//   4. on rebuild() is called after the table, and writes the table into its descriptor set again: the image may be
+//   another.
 #pragma once
 
 #include <array>
@@ -23,8 +25,8 @@ std::vector<Knob> multiple_scattering_knobs();
 // Whether these settings want the table: `orders` is not 1. Without it there is no pass and no image: do not make one.
 bool wants_multiple_scattering(const Settings& settings);
 
-// Orders to gather before the series of this air can be closed: 3 + 2 tau + 0.3 tau^2, tau its scattering optical depth straight up in the
-// channel where it is deepest; 64 at most.
+// Orders to gather before the series of this air can be closed: 3 + 2 tau + 0.3 tau^2, tau its scattering optical depth
+// straight up in the channel where it is deepest; 64 at most.
 int orders_of(const interop::Atmosphere& air);
 
 // Pass "multiple scattering": fills the table, when the air has changed.

@@ -38,9 +38,13 @@ std::vector<Knob> sky_knobs() {
 
 // [sky_pass]
 SkyPass::SkyPass(const app::Context& context, graph::Graph& graph)
-    : context_(context), graph_(graph), air_(context, graph),
+    : context_(context),
+      graph_(graph),
+      air_(context, graph),
       transmittance_(context.scene.sun.disc ? std::make_unique<TransmittanceLut>(context, graph, air_) : nullptr),
-      scattering_(wants_multiple_scattering(context.settings) ? std::make_unique<MultipleScatteringLut>(context, graph, air_) : nullptr),
+      scattering_(wants_multiple_scattering(context.settings)
+                      ? std::make_unique<MultipleScatteringLut>(context, graph, air_)
+                      : nullptr),
       sky_view_(context, graph, air_, scattering_.get()) {
   rebuild();
 }
@@ -50,18 +54,23 @@ void SkyPass::set_target(const gpu::Image& target, gpu::Use outside) {
   write_targets();
   if (picture_) return graph_.replace(*picture_, target);
   picture_ = graph_.add("picture", target, outside);
-  std::vector<graph::Access> accesses{{air_.resource(), gpu::kUniformRead}, {sky_view_.resource(), gpu::kSampledRead}, {*picture_, gpu::kComputeWrite}};
+  std::vector<graph::Access> accesses{
+      {air_.resource(), gpu::kUniformRead}, {sky_view_.resource(), gpu::kSampledRead}, {*picture_, gpu::kComputeWrite}};
   if (transmittance_) accesses.push_back({transmittance_->resource(), gpu::kSampledRead});
   if (scattering_) accesses.push_back({scattering_->resource(), gpu::kSampledRead});
   graph_.add({.name = "sky",
               .accesses = std::move(accesses),
-              .record = [this](const app::Frame& frame) {
-                const VkExtent2D size{static_cast<uint32_t>(frame.camera.size.x), static_cast<uint32_t>(frame.camera.size.y)};
-                if (sky_view_.serves(frame.camera.right.w)) return gpu::dispatch_over(frame.commands, look_, look_set_, LookPush{frame.camera}, size);
-                const int table_steps = scattering_ ? context_.settings.integer("multiple_scattering.view_steps") : 0;
-                const MarchPush push{frame.camera, context_.settings.integer("view.steps"), table_steps, {}};
-                gpu::dispatch_over(frame.commands, march_, march_set_, push, size);
-              },
+              .record =
+                  [this](const app::Frame& frame) {
+                    const VkExtent2D size{static_cast<uint32_t>(frame.camera.size.x),
+                                          static_cast<uint32_t>(frame.camera.size.y)};
+                    if (sky_view_.serves(frame.camera.altitude_km))
+                      return gpu::dispatch_over(frame.commands, look_, look_set_, LookPush{frame.camera}, size);
+                    const int table_steps =
+                        scattering_ ? context_.settings.integer("multiple_scattering.view_steps") : 0;
+                    const MarchPush push{frame.camera, context_.settings.integer("view.steps"), table_steps, {}};
+                    gpu::dispatch_over(frame.commands, march_, march_set_, push, size);
+                  },
               .changed = [](const app::Frame&) { return true; }});
 }
 // [/sky_pass]
@@ -78,7 +87,8 @@ void SkyPass::rebuild() {
   gpu::Specialization constants = disc ? transmittance_->variant() : specialization(air_variant(context_.scene));
   constants.resize(6);  // of the table, or unused
   constants.push_back(sky_view_.unit());
-  look_ = gpu::create_compute_pipeline(device, disc ? "10_sky_view_lut/sky_disc.comp" : "10_sky_view_lut/sky.comp", std::move(bindings), sizeof(LookPush), constants);
+  look_ = gpu::create_compute_pipeline(device, disc ? "10_sky_view_lut/sky_disc.comp" : "10_sky_view_lut/sky.comp",
+                                       std::move(bindings), sizeof(LookPush), constants);
   look_set_ = gpu::create_descriptor_set(device, look_.set_layout, look_.bindings);
   gpu::write_buffer(device, look_set_, 0, kUniform, air_.buffer());
   gpu::write_sampled_image(device, look_set_, 1, sky_view_.image(), sky_view_.sampler());
@@ -88,10 +98,12 @@ void SkyPass::rebuild() {
   const std::string chapter = scattering_ ? "09_multiple_scattering_lut" : "05_single_scattering";
   std::vector<gpu::Binding> march_bindings{{0, kUniform}, {scattering_ ? 2u : 1u, kImage}};
   if (scattering_) march_bindings.push_back({1, kTable});
-  gpu::Specialization march_constants = scattering_ ? scattering_->variant() : specialization(air_variant(context_.scene));
+  gpu::Specialization march_constants =
+      scattering_ ? scattering_->variant() : specialization(air_variant(context_.scene));
   march_constants.push_back(disc);
   if (!scattering_) march_constants.insert(march_constants.end(), {kRuleAdapted, 1u});
-  march_ = gpu::create_compute_pipeline(device, chapter + "/image.comp", std::move(march_bindings), sizeof(MarchPush), march_constants);
+  march_ = gpu::create_compute_pipeline(device, chapter + "/image.comp", std::move(march_bindings), sizeof(MarchPush),
+                                        march_constants);
   march_set_ = gpu::create_descriptor_set(device, march_.set_layout, march_.bindings);
   gpu::write_buffer(device, march_set_, 0, kUniform, air_.buffer());
   if (scattering_) gpu::write_sampled_image(device, march_set_, 1, scattering_->image(), scattering_->sampler());
@@ -128,7 +140,9 @@ void SkyProgram::draw(const app::Frame& frame) {
 }
 
 std::string SkyProgram::explain() const {
-  return graph_->explain() + (disc_ ? "" : "  transmittance        off: the scene shows no sun's disc, and nothing else here asks the table\n") +
+  return graph_->explain() +
+         (disc_ ? ""
+                : "  transmittance        off: the scene shows no sun's disc, and nothing else here asks the table\n") +
          (all_orders_ ? "" : "  multiple scattering  off: orders is 1\n");
 }
 
@@ -142,15 +156,17 @@ const gpu::Image* SkyPass::image(const std::string& name) const {
 const gpu::Image* SkyProgram::image(const std::string& name) const { return sky_->image(name); }
 
 // [probe]
-// The table belongs to one altitude and one height of the sun: rays that share both are looked up together. The rest are
-// marched.
+// The table belongs to one altitude and one height of the sun: rays that share both are looked up together. The rest
+// are marched.
 std::vector<app::ProbeResult> SkyProgram::probe(std::span<const app::ProbeRay> rays) {
   const gpu::Device& device = context_.device;
   std::map<std::pair<double, double>, std::vector<size_t>> groups;
   std::vector<size_t> marched;
   for (size_t i = 0; i < rays.size(); ++i) {
-    if (sky_->sky_view().serves(rays[i].altitude_km)) groups[{rays[i].altitude_km, rays[i].sun_zenith_deg}].push_back(i);
-    else marched.push_back(i);
+    if (sky_->sky_view().serves(rays[i].altitude_km))
+      groups[{rays[i].altitude_km, rays[i].sun_zenith_deg}].push_back(i);
+    else
+      marched.push_back(i);
   }
   std::vector<app::ProbeResult> results(rays.size());
   if (!marched.empty()) {
@@ -168,11 +184,15 @@ std::vector<app::ProbeResult> SkyProgram::probe(std::span<const app::ProbeRay> r
   SkyViewLut table(context_, graph, air, scattering.get());
   gpu::Specialization constants = specialization(air_variant(context_.scene));
   constants.push_back(table.unit());
-  const gpu::ComputePipeline pipeline = gpu::create_compute_pipeline(device, "10_sky_view_lut/probe.comp", {{0, kUniform}, {1, kTable}, {2, kStorage}, {3, kStorage}}, sizeof(ProbePush), constants);
+  const gpu::ComputePipeline pipeline = gpu::create_compute_pipeline(
+      device, "10_sky_view_lut/probe.comp", {{0, kUniform}, {1, kTable}, {2, kStorage}, {3, kStorage}},
+      sizeof(ProbePush), constants);
   const gpu::DescriptorSet set = gpu::create_descriptor_set(device, pipeline.set_layout, pipeline.bindings);
   const size_t room = rays.size() - marched.size();
-  const gpu::Buffer in = gpu::create_buffer(device, "rays", room * sizeof(MarchRay), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::upload);
-  const gpu::Buffer out = gpu::create_buffer(device, "results", room * 2 * sizeof(glm::vec4), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::readback);
+  const gpu::Buffer in = gpu::create_buffer(device, "rays", room * sizeof(MarchRay), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                                            gpu::Where::upload);
+  const gpu::Buffer out = gpu::create_buffer(device, "results", room * 2 * sizeof(glm::vec4),
+                                             VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::readback);
   gpu::write_buffer(device, set, 0, kUniform, air.buffer());
   gpu::write_sampled_image(device, set, 1, table.image(), table.sampler());
   gpu::write_buffer(device, set, 2, kStorage, in);
@@ -181,11 +201,14 @@ std::vector<app::ProbeResult> SkyProgram::probe(std::span<const app::ProbeRay> r
   ProbePush push{};
   const graph::Resource done = graph.add("results", out);
   graph.add({.name = "probe",
-             .accesses = {{air.resource(), gpu::kUniformRead}, {table.resource(), gpu::kSampledRead}, {done, gpu::kComputeWrite}},
-             .record = [&](const app::Frame& frame) {
-               gpu::dispatch(frame.commands, pipeline, set, push, static_cast<uint32_t>(push.count + 63) / 64);
-               gpu::buffer_barrier(frame.commands, out.handle, gpu::kComputeWrite, gpu::kHostRead);
-             },
+             .accesses = {{air.resource(), gpu::kUniformRead},
+                          {table.resource(), gpu::kSampledRead},
+                          {done, gpu::kComputeWrite}},
+             .record =
+                 [&](const app::Frame& frame) {
+                   gpu::dispatch(frame.commands, pipeline, set, push, static_cast<uint32_t>(push.count + 63) / 64);
+                   gpu::buffer_barrier(frame.commands, out.handle, gpu::kComputeWrite, gpu::kHostRead);
+                 },
              .changed = [](const app::Frame&) { return true; }});
   graph.want(done);
   graph.compile();
@@ -196,10 +219,11 @@ std::vector<app::ProbeResult> SkyProgram::probe(std::span<const app::ProbeRay> r
   for (const auto& [key, members] : groups) {
     push.first += push.count;
     push.count = static_cast<int32_t>(members.size());
-    for (size_t k = 0; k < members.size(); ++k) in.as<MarchRay>()[static_cast<size_t>(push.first) + k] = march_ray(rays[members[k]], context_.scene.planet);
+    for (size_t k = 0; k < members.size(); ++k)
+      in.as<MarchRay>()[static_cast<size_t>(push.first) + k] = march_ray(rays[members[k]], context_.scene.planet);
     const MarchRay& first = in.as<MarchRay>()[static_cast<size_t>(push.first)];
     CameraRays camera{};
-    camera.right.w = first.view.w;
+    camera.altitude_km = first.view.w;
     camera.sun = first.sun;
     gpu::run_once(device, pool, [&](VkCommandBuffer commands) {
       timer.begin_frame(commands);

@@ -9,8 +9,8 @@
 
 namespace welkin {
 
-// Those of chapters 05, 08, 09 that it uses, without their ladders, and the chapter's own; and `tables`, which has every table
-// computed in every frame.
+// Those of chapters 05, 08, 09 that it uses, without their ladders, and the chapter's own; and `tables`, which has
+// every table computed in every frame.
 std::vector<Knob> sky_knobs();
 
 // Pass "sky": writes a picture of the sky, from the table or by the direct march; the sun's disc behind the air.

@@ -7,7 +7,8 @@
 //      10_sky_view_lut/sky_view.glsl,
 //   3. asks serves() of the frame's altitude first: where it is false the table is not kept, and the direct march of
 //      chapter 09 takes its place,
-//   4. on rebuild() is called after the table, and writes the table into its descriptor set again: the image may be another.
+//   4. on rebuild() is called after the table, and writes the table into its descriptor set again: the image may be
+//   another.
 #pragma once
 
 #include <optional>
@@ -20,11 +21,13 @@ namespace welkin {
 // sky_view.method, .size, .format, .highest.
 std::vector<Knob> sky_view_knobs();
 
-// Pass "sky view": one march of chapter 09 per texel, when the air, the camera's altitude or the sun's height has changed.
+// Pass "sky view": one march of chapter 09 per texel, when the air, the camera's altitude or the sun's height has
+// changed.
 class SkyViewLut {
  public:
   // scattering: nullptr where `orders` is 1; the table then holds single scattering.
-  SkyViewLut(const app::Context& context, graph::Graph& graph, const AirBlock& air, const MultipleScatteringLut* scattering);
+  SkyViewLut(const app::Context& context, graph::Graph& graph, const AirBlock& air,
+             const MultipleScatteringLut* scattering);
   SkyViewLut(const SkyViewLut&) = delete;
   void rebuild();  // as Program::rebuild, after the scattering table
   const gpu::Image& image() const { return image_; }

@@ -17,11 +17,12 @@ struct AerialPush {
 };
 AerialPush aerial_push(const app::Context& context, const app::Frame& frame);
 
-// What the passes of this chapter read, and how they name it: the block at binding 0, chapter 09's table at 1 (another image
-// stands in when there is none), the shadow map at 2.
+// What the passes of this chapter read, and how they name it: the block at binding 0, chapter 09's table at 1 (another
+// image stands in when there is none), the shadow map at 2.
 class AerialInputs {
  public:
-  AerialInputs(const app::Context& context, const AirBlock& air, const MultipleScatteringLut* table, const Relief& relief)
+  AerialInputs(const app::Context& context, const AirBlock& air, const MultipleScatteringLut* table,
+               const Relief& relief)
       : context_(context), air_(air), table_(table), relief_(relief) {}
   std::vector<gpu::Binding> bindings() const;
   std::vector<graph::Access> accesses() const;

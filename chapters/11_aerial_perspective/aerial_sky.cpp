@@ -32,15 +32,20 @@ std::vector<Knob> aerial_sky_knobs() {
 // With terrain the sky is drawn into an image of its own, and the picture is composed; without, the sky is the picture.
 struct AerialSky::Frames {
   explicit Frames(const app::Context& context)
-      : graph(context.inject), all_orders(wants_multiple_scattering(context.settings)), colour(context.settings.choice("froxels.transmittance") == "colour"), disc(context.scene.sun.disc), sky(context, graph) {
+      : graph(context.inject),
+        all_orders(wants_multiple_scattering(context.settings)),
+        colour(context.settings.choice("froxels.transmittance") == "colour"),
+        disc(context.scene.sun.disc),
+        sky(context, graph) {
     if (!context.scene.terrain) return;
     relief.emplace(context, graph);
     inputs.emplace(context, sky.air(), sky.scattering(), *relief);
     if (context.settings.choice("aerial.method") == "froxels") aerial.emplace(context, graph, *inputs);
   }
   bool fits(const app::Context& context) const {
-    return all_orders == wants_multiple_scattering(context.settings) && colour == (context.settings.choice("froxels.transmittance") == "colour") &&
-           disc == context.scene.sun.disc && relief.has_value() == context.scene.terrain.has_value() &&
+    return all_orders == wants_multiple_scattering(context.settings) &&
+           colour == (context.settings.choice("froxels.transmittance") == "colour") && disc == context.scene.sun.disc &&
+           relief.has_value() == context.scene.terrain.has_value() &&
            (!relief || aerial.has_value() == (context.settings.choice("aerial.method") == "froxels"));
   }
 
@@ -81,11 +86,14 @@ void AerialSky::make_compose() {
   const Relief& relief = *frames.relief;
   gpu::Specialization constants = frames.inputs->variant();
   constants.insert(constants.end(), {static_cast<uint32_t>(context_.settings.integer("aerial.march_slices")),
-                                     context_.scene.terrain->signs_azimuth_deg.has_value(), std::bit_cast<uint32_t>(static_cast<float>(kNear_km))});
+                                     context_.scene.terrain->signs_azimuth_deg.has_value(),
+                                     std::bit_cast<uint32_t>(static_cast<float>(kNear_km))});
   std::vector<gpu::Binding> bindings = frames.inputs->bindings();
   if (frames.aerial) bindings.insert(bindings.end(), {{3, kSampled}, {4, kSampled}});
   bindings.insert(bindings.end(), {{5, kSampled}, {6, kSampled}, {7, kSampled}, {8, kImage}, {9, kImage}});
-  frames.compose = gpu::create_compute_pipeline(device, frames.aerial ? "11_aerial_perspective/compose.comp" : "11_aerial_perspective/compose_march.comp", bindings, sizeof(AerialPush), constants);
+  frames.compose = gpu::create_compute_pipeline(
+      device, frames.aerial ? "11_aerial_perspective/compose.comp" : "11_aerial_perspective/compose_march.comp",
+      bindings, sizeof(AerialPush), constants);
   frames.set = gpu::create_descriptor_set(device, frames.compose.set_layout, frames.compose.bindings);
   frames.inputs->write(frames.set);
   if (frames.aerial) {
@@ -104,14 +112,17 @@ void AerialSky::set_target(const gpu::Image& target) {
     frames.sky.set_target(target);
     if (!frames.compiled) frames.graph.want(frames.sky.resource());
   } else {
-    frames.sky_image = gpu::create_image(context_.device, "sky", target.size, VK_FORMAT_R32G32B32A32_SFLOAT, VK_IMAGE_USAGE_STORAGE_BIT);
+    frames.sky_image = gpu::create_image(context_.device, "sky", target.size, VK_FORMAT_R32G32B32A32_SFLOAT,
+                                         VK_IMAGE_USAGE_STORAGE_BIT);
     frames.sky.set_target(frames.sky_image, {});
     frames.relief->set_size(target.size);
     gpu::write_sampled_image(context_.device, frames.set, 5, frames.relief->depth(), frames.relief->depth_sampler());
     gpu::write_storage_image(context_.device, frames.set, 8, frames.sky_image);
     gpu::write_storage_image(context_.device, frames.set, 9, target);
-    if (frames.compiled) frames.graph.replace(frames.picture, target);
-    else frames.picture = frames.graph.add("picture", target, displayed);
+    if (frames.compiled)
+      frames.graph.replace(frames.picture, target);
+    else
+      frames.picture = frames.graph.add("picture", target, displayed);
   }
   if (frames.compiled) return;
   if (frames.relief) {
@@ -123,7 +134,11 @@ void AerialSky::set_target(const gpu::Image& target) {
     accesses.push_back({frames.picture, gpu::kComputeWrite});
     frames.graph.add({.name = "compose",
                       .accesses = std::move(accesses),
-                      .record = [this](const app::Frame& frame) { gpu::dispatch_over(frame.commands, frames_->compose, frames_->set, aerial_push(context_, frame), frame.target.size); },
+                      .record =
+                          [this](const app::Frame& frame) {
+                            gpu::dispatch_over(frame.commands, frames_->compose, frames_->set,
+                                               aerial_push(context_, frame), frame.target.size);
+                          },
                       .changed = [](const app::Frame&) { return true; }});
     frames.graph.want(frames.picture);
   }
@@ -136,23 +151,38 @@ void AerialSky::draw(const app::Frame& frame) {
   if (context_.settings.choice("tables") == "all") frames_->graph.redo();
   if (!frames_->relief) return frames_->graph.execute(frame);
   const Lifted from = lifted(frame, frames_->relief->map(), context_.scene.planet.ground_radius_km);
-  frames_->graph.execute({frame.commands, frame.target, from.camera, frame.timer, frame.index, frame.seed, frame.seconds, from.position_km});
+  frames_->graph.execute({frame.commands, frame.target, from.camera, frame.timer, frame.index, frame.seed,
+                          frame.seconds, from.position_km});
 }
 
 // A probe's ray has no place on the map: it sees chapter 10's sky.
-std::vector<app::ProbeResult> AerialSky::probe(std::span<const app::ProbeRay> rays) { return SkyProgram(context_).probe(rays); }
+std::vector<app::ProbeResult> AerialSky::probe(std::span<const app::ProbeRay> rays) {
+  return SkyProgram(context_).probe(rays);
+}
 
 std::string AerialSky::explain() const {
   const Frames& frames = *frames_;
   std::string text = frames.graph.explain();
-  const auto effect = [&text](const char* name, bool on, const std::string& why) { text += fmt::format("  {:<18} {:<4} {}\n", name, on ? "on" : "off", why); };
+  const auto effect = [&text](const char* name, bool on, const std::string& why) {
+    text += fmt::format("  {:<18} {:<4} {}\n", name, on ? "on" : "off", why);
+  };
   const std::string none = "no [terrain] in scene";
   const auto& terrain = context_.scene.terrain;
-  effect("terrain", terrain.has_value(), !terrain ? none : fmt::format("[terrain] in scene: {} x {} samples of {:.0f} m, up to {:.2f} km", frames.relief->map().size, frames.relief->map().size,
-                                                                       1e3 * terrain->extent_km / frames.relief->map().size, frames.relief->map().highest_km));
-  effect("aerial perspective", terrain.has_value(), !terrain ? none : frames.aerial ? "froxels before the terrain" : "aerial.method is march: per pixel, no froxels");
-  effect("terrain shadows", terrain && terrain->shadows, !terrain ? none : fmt::format("terrain.shadows = {}", terrain->shadows));
-  effect("signs", terrain && terrain->signs_azimuth_deg, !terrain ? none : terrain->signs_azimuth_deg ? fmt::format("terrain.signs_azimuth_deg = {}", *terrain->signs_azimuth_deg) : "no terrain.signs_azimuth_deg");
+  effect("terrain", terrain.has_value(),
+         !terrain ? none
+                  : fmt::format("[terrain] in scene: {} x {} samples of {:.0f} m, up to {:.2f} km",
+                                frames.relief->map().size, frames.relief->map().size,
+                                1e3 * terrain->extent_km / frames.relief->map().size, frames.relief->map().highest_km));
+  effect("aerial perspective", terrain.has_value(),
+         !terrain        ? none
+         : frames.aerial ? "froxels before the terrain"
+                         : "aerial.method is march: per pixel, no froxels");
+  effect("terrain shadows", terrain && terrain->shadows,
+         !terrain ? none : fmt::format("terrain.shadows = {}", terrain->shadows));
+  effect("signs", terrain && terrain->signs_azimuth_deg,
+         !terrain                     ? none
+         : terrain->signs_azimuth_deg ? fmt::format("terrain.signs_azimuth_deg = {}", *terrain->signs_azimuth_deg)
+                                      : "no terrain.signs_azimuth_deg");
   return text;
 }
 

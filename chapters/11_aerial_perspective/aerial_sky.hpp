@@ -1,4 +1,5 @@
-// Chapter 11's program: chapter 10's sky, and before it terrain seen through air. A scene without terrain is chapter 10's.
+// Chapter 11's program: chapter 10's sky, and before it terrain seen through air. A scene without terrain is chapter
+// 10's.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
-// Chapter 11, aerial perspective: terrain under the sky of chapter 10, and the air in front of it. Mountains turn blue with
-// distance; at sunset they lay their shadows through the haze.
+// Chapter 11, aerial perspective: terrain under the sky of chapter 10, and the air in front of it. Mountains turn blue
+// with distance; at sunset they lay their shadows through the haze.
 #include "chapters/02_window/window.hpp"
 #include "chapters/06_display/auto_display.hpp"
 #include "chapters/11_aerial_perspective/aerial_sky.hpp"
@@ -33,7 +33,12 @@ int main(int argc, char** argv) {
       .knobs = knobs(),
       .reference = {{"aerial.method", "march"}, {"aerial.march_slices", "256"}, {"froxels.samples", "4"}},
       .truth = terrain_truth(),
-      .standard_views = {{"noon", "horizon"}, {"noon", "airliner"}, {"sunset", "sun"}, {"sunset", "wide"}, {"twilight", "glow"}, {"alien", "horizon"}},
+      .standard_views = {{"noon", "horizon"},
+                         {"noon", "airliner"},
+                         {"sunset", "sun"},
+                         {"sunset", "wide"},
+                         {"twilight", "glow"},
+                         {"alien", "horizon"}},
       .window = open_window_system,
       .make = [](const app::Context& context) { return std::make_unique<AerialSky>(context); },
       .make_display = make_display};

@@ -1,7 +1,8 @@
-// The terrain on the device: its maps, the pass that finds its shadows, and the pass that draws its mesh into a depth image.
+// The terrain on the device: its maps, the pass that finds its shadows, and the pass that draws its mesh into a depth
+// image.
 //
-// Nothing but depth is drawn: from it the compose pass knows where a pixel lies, and all else is a look-up in the maps. The
-// mesh is rings of square cells around the camera, each ring with cells twice as large as the one inside it.
+// Nothing but depth is drawn: from it the compose pass knows where a pixel lies, and all else is a look-up in the maps.
+// The mesh is rings of square cells around the camera, each ring with cells twice as large as the one inside it.
 #pragma once
 
 #include <vector>
@@ -15,7 +16,8 @@ inline constexpr double kNear_km = 1e-4;  // of the reversed depth
 
 std::vector<Knob> terrain_knobs();  // terrain.cells, terrain.shadow_size
 
-// Where a frame's camera stands, and its frame of east, north and up; km, global frame. Not below `least_km` above ground.
+// Where a frame's camera stands, and its frame of east, north and up; km, global frame. Not below `least_km` above
+// ground.
 struct Standpoint {
   glm::dvec3 position_km, east, north, up;
   double altitude_km;

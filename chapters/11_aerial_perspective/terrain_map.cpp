@@ -34,14 +34,16 @@ double noise(double x, double y, uint32_t seed) {
   const int32_t i = static_cast<int32_t>(floor_x), j = static_cast<int32_t>(floor_y);
   const double u = x - floor_x, v = y - floor_y;
   const auto corner = [&](int32_t di, int32_t dj) {
-    static constexpr double kDirections[8][2] = {{1, 0}, {0.70710678118654752, 0.70710678118654752}, {0, 1}, {-0.70710678118654752, 0.70710678118654752},
-                                                 {-1, 0}, {-0.70710678118654752, -0.70710678118654752}, {0, -1}, {0.70710678118654752, -0.70710678118654752}};
+    static constexpr double kDirections[8][2] = {
+        {1, 0},  {0.70710678118654752, 0.70710678118654752},   {0, 1},  {-0.70710678118654752, 0.70710678118654752},
+        {-1, 0}, {-0.70710678118654752, -0.70710678118654752}, {0, -1}, {0.70710678118654752, -0.70710678118654752}};
     const double* direction = kDirections[hash(i + di, j + dj, seed) >> 29];
     return direction[0] * (u - di) + direction[1] * (v - dj);
   };
   const auto fade = [](double t) { return t * t * t * (t * (t * 6.0 - 15.0) + 10.0); };
   const double a = fade(u), b = fade(v);
-  const double low = corner(0, 0) + a * (corner(1, 0) - corner(0, 0)), high = corner(0, 1) + a * (corner(1, 1) - corner(0, 1));
+  const double low = corner(0, 0) + a * (corner(1, 0) - corner(0, 0)),
+               high = corner(0, 1) + a * (corner(1, 1) - corner(0, 1));
   return 1.5 * (low + b * (high - low));
 }
 
@@ -62,8 +64,8 @@ double ridges(double x, double y, uint32_t seed) {
 // [/noise]
 
 // [hills]
-// A plain around the scene's place, ranges further out, and level ground again at the map's edge, where the sphere begins.
-// Relative height; x, y in km.
+// A plain around the scene's place, ranges further out, and level ground again at the map's edge, where the sphere
+// begins. Relative height; x, y in km.
 double hill(double x, double y, double extent_km, uint32_t seed) {
   const double from_centre = std::sqrt(x * x + y * y) / (0.5 * extent_km);
   const double to_edge = std::max(std::abs(x), std::abs(y)) / (0.5 * extent_km);
@@ -82,7 +84,8 @@ std::vector<float> make_heights(const Terrain& terrain) {
     for (int i = 0; i < n; ++i) {
       const double x = ((i + 0.5) / n - 0.5) * terrain.extent_km, y = (0.5 - (j + 0.5) / n) * terrain.extent_km;
       float& height = heights[static_cast<size_t>(j) * n + i];
-      height = static_cast<float>(std::max(hill(x, y, terrain.extent_km, static_cast<uint32_t>(terrain.seed) * 101u), 0.0));
+      height =
+          static_cast<float>(std::max(hill(x, y, terrain.extent_km, static_cast<uint32_t>(terrain.seed) * 101u), 0.0));
       highest = std::max(highest, height);
     }
   for (float& height : heights) height *= static_cast<float>(terrain.height_km) / std::max(highest, 1e-6f);
@@ -100,37 +103,50 @@ std::vector<float> read_heights(const Terrain& terrain, int& size) {
     for (size_t i = 0; i < 4; ++i) value = value << 8 | static_cast<uint8_t>(bytes[at + i]);
     return value;
   };
-  if (bytes.size() < 33 || bytes.compare(1, 3, "PNG") != 0 || bytes.compare(12, 4, "IHDR") != 0) fail("height map {}: not a PNG file; {}", name, accepted);
+  if (bytes.size() < 33 || bytes.compare(1, 3, "PNG") != 0 || bytes.compare(12, 4, "IHDR") != 0)
+    fail("height map {}: not a PNG file; {}", name, accepted);
   const uint32_t width = big_endian(16), height = big_endian(20);
   const int depth = bytes[24], colour = bytes[25];
-  if (depth != 16 || colour != 0) fail("height map {}: {} bits a sample, {}; {}", name, depth, colour == 0 ? "grayscale" : "not grayscale alone", accepted);
+  if (depth != 16 || colour != 0)
+    fail("height map {}: {} bits a sample, {}; {}", name, depth, colour == 0 ? "grayscale" : "not grayscale alone",
+         accepted);
   if (width != height) fail("height map {}: {} x {} samples, not square; {}", name, width, height, accepted);
   if (width < 2 || width > kLargestSide) fail("height map {}: {} samples a side; {}", name, width, accepted);
   const Image16 picture = image::read_png16(terrain.height_map);
   size = static_cast<int>(width);
   std::vector<float> heights(size_t{width} * width);
-  for (size_t i = 0; i < heights.size(); ++i) heights[i] = static_cast<float>(picture.rgb[3 * i] / 65535.0 * terrain.height_km);
+  for (size_t i = 0; i < heights.size(); ++i)
+    heights[i] = static_cast<float>(picture.rgb[3 * i] / 65535.0 * terrain.height_km);
   return heights;
 }
 // [/read]
 
 // [slopes_and_cover]
-// Slopes by central differences; cover from slope and height: rock where it is steep, snow high up, grass else, bare ground
-// towards the edge of the map, where it has to look like the sphere beyond.
+// Slopes by central differences; cover from slope and height: rock where it is steep, snow high up, grass else, bare
+// ground towards the edge of the map, where it has to look like the sphere beyond.
 void add_slopes_and_cover(TerrainMap& map) {
   const int n = map.size;
   const double texel_km = map.extent_km / n;
-  const auto height = [&](int i, int j) { return static_cast<double>(map.height_km[static_cast<size_t>(std::clamp(j, 0, n - 1)) * n + std::clamp(i, 0, n - 1)]); };
+  const auto height = [&](int i, int j) {
+    return static_cast<double>(
+        map.height_km[static_cast<size_t>(std::clamp(j, 0, n - 1)) * n + std::clamp(i, 0, n - 1)]);
+  };
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i) {
-      const double dx = (height(i + 1, j) - height(i - 1, j)) / (2.0 * texel_km), dy = (height(i, j - 1) - height(i, j + 1)) / (2.0 * texel_km);
+      const double dx = (height(i + 1, j) - height(i - 1, j)) / (2.0 * texel_km),
+                   dy = (height(i, j - 1) - height(i, j + 1)) / (2.0 * texel_km);
       const double x = ((i + 0.5) / n - 0.5) * map.extent_km, y = (0.5 - (j + 0.5) / n) * map.extent_km;
-      const double steep = std::sqrt(dx * dx + dy * dy), patch = noise(x / 1.3, y / 1.3, 7u) + 0.5 * noise(x / 0.4, y / 0.4, 8u);
+      const double steep = std::sqrt(dx * dx + dy * dy),
+                   patch = noise(x / 1.3, y / 1.3, 7u) + 0.5 * noise(x / 0.4, y / 0.4, 8u);
       const double to_edge = std::max(std::abs(x), std::abs(y)) / (0.5 * map.extent_km);
-      double bare = std::max(smooth_step(0.7, 0.95, to_edge), 0.55 * smooth_step(-0.3, 0.9, patch) * (1.0 - smooth_step(0.05, 0.3, height(i, j))));
+      double bare = std::max(smooth_step(0.7, 0.95, to_edge),
+                             0.55 * smooth_step(-0.3, 0.9, patch) * (1.0 - smooth_step(0.05, 0.3, height(i, j))));
       const double snow = smooth_step(1.5, 1.9, height(i, j) + 0.2 * patch - 0.5 * steep) * (1.0 - bare);
-      const double rock = smooth_step(0.2, 0.45, steep + 0.08 * patch + 0.12 * smooth_step(0.8, 1.6, height(i, j))) * (1.0 - bare - snow);
-      const auto share = [](double value) { return static_cast<uint8_t>(std::lround(std::clamp(value, 0.0, 1.0) * 255.0)); };
+      const double rock = smooth_step(0.2, 0.45, steep + 0.08 * patch + 0.12 * smooth_step(0.8, 1.6, height(i, j))) *
+                          (1.0 - bare - snow);
+      const auto share = [](double value) {
+        return static_cast<uint8_t>(std::lround(std::clamp(value, 0.0, 1.0) * 255.0));
+      };
       map.slope.push_back({static_cast<float>(dx), static_cast<float>(dy)});
       map.cover.push_back({share(1.0 - bare - snow - rock), share(rock), share(snow), share(bare)});
     }
@@ -155,7 +171,9 @@ double height_at(const TerrainMap& map, double x_km, double y_km) {
   const double row = std::clamp((0.5 - y_km / map.extent_km) * map.size - 0.5, 0.0, map.size - 1.0);
   const int i = std::min(static_cast<int>(column), map.size - 2), j = std::min(static_cast<int>(row), map.size - 2);
   const double u = column - i, v = row - j;
-  const auto at = [&](int x, int y) { return static_cast<double>(map.height_km[static_cast<size_t>(y) * map.size + x]); };
+  const auto at = [&](int x, int y) {
+    return static_cast<double>(map.height_km[static_cast<size_t>(y) * map.size + x]);
+  };
   return (at(i, j) * (1 - u) + at(i + 1, j) * u) * (1 - v) + (at(i, j + 1) * (1 - u) + at(i + 1, j + 1) * u) * v;
 }
 

@@ -1,8 +1,9 @@
-// The relief of a scene as three maps: height in km, slopes, and what covers it. Made from noise, or read from a PNG. CPU.
+// The relief of a scene as three maps: height in km, slopes, and what covers it. Made from noise, or read from a PNG.
+// CPU.
 //
-// A map is a square of `size` x `size` samples around the scene's place: column i lies at x = ((i + 1/2)/size - 1/2) extent
-// to the east, row j at y = (1/2 - (j + 1/2)/size) extent to the north, so that row 0 is the north edge, as in a picture.
-// (x, y) are where the vertical through a point pierces the sphere, seen straight down on the tangent plane.
+// A map is a square of `size` x `size` samples around the scene's place: column i lies at x = ((i + 1/2)/size - 1/2)
+// extent to the east, row j at y = (1/2 - (j + 1/2)/size) extent to the north, so that row 0 is the north edge, as in a
+// picture. (x, y) are where the vertical through a point pierces the sphere, seen straight down on the tangent plane.
 #pragma once
 
 #include <array>
@@ -16,9 +17,9 @@ namespace welkin {
 struct TerrainMap {
   int size = 0;
   double extent_km = 0.0;
-  std::vector<float> height_km;                 // size * size, 0 and above
-  std::vector<std::array<float, 2>> slope;      // dh/dx, dh/dy
-  std::vector<std::array<uint8_t, 4>> cover;    // share of grass, rock, snow, bare ground (the planet's own), of 255
+  std::vector<float> height_km;               // size * size, 0 and above
+  std::vector<std::array<float, 2>> slope;    // dh/dx, dh/dy
+  std::vector<std::array<uint8_t, 4>> cover;  // share of grass, rock, snow, bare ground (the planet's own), of 255
   float highest_km = 0.0;
 };
 

@@ -1,11 +1,10 @@
 // Camera mathematics. See camera.hpp.
 #include "common/app/camera.hpp"
 
-#include <glm/geometric.hpp>
-#include <glm/trigonometric.hpp>
-
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
 
 namespace welkin::app {
 namespace {
@@ -73,7 +72,8 @@ SunPlace advance_sun(double zenith_deg, double azimuth_deg, double latitude_deg,
           std::fmod(glm::degrees(std::atan2(turned.x, turned.y)) + 360.0, 360.0)};
 }
 
-CameraRays camera_rays(const CameraPose& pose, const Scene& scene, double time_s, glm::uvec2 size, uint32_t seed, uint32_t frame) {
+CameraRays camera_rays(const CameraPose& pose, const Scene& scene, double time_s, glm::uvec2 size, uint32_t seed,
+                       uint32_t frame) {
   const double radius = scene.planet.ground_radius_km;
   const LocalFrame local = local_frame(pose, radius);
   const SunPlace place = advance_sun(scene.sun.zenith_deg, scene.sun.azimuth_deg, scene.sun.latitude_deg, time_s);
@@ -84,11 +84,16 @@ CameraRays camera_rays(const CameraPose& pose, const Scene& scene, double time_s
   const double scale = std::tan(glm::radians(pose.fov_deg) / 2.0);
   const double aspect = static_cast<double>(size.x) / static_cast<double>(size.y);
   const double altitude = std::max(altitude_km(pose, radius), 0.0);
-  return {.right = {right * (scale * aspect), altitude},
-          .up = {up * scale, altitude * 1000.0},
-          .forward = {forward, time_s},
-          .sun = {glm::dot(sun, local.east), glm::dot(sun, local.north), glm::dot(sun, local.up), 0.0},
-          .size = {static_cast<int>(size.x), static_cast<int>(size.y), static_cast<int>(seed), static_cast<int>(frame)}};
+  return {.right = right * (scale * aspect),
+          .altitude_km = static_cast<float>(altitude),
+          .up = up * scale,
+          .altitude_m = static_cast<float>(altitude * 1000.0),
+          .forward = forward,
+          .time_s = static_cast<float>(time_s),
+          .sun = {glm::dot(sun, local.east), glm::dot(sun, local.north), glm::dot(sun, local.up)},
+          .size = size,
+          .seed = static_cast<int>(seed),
+          .frame = static_cast<int>(frame)};
 }
 
 View view_of(const CameraPose& pose, double ground_radius_km) {

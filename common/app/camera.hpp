@@ -44,7 +44,8 @@ struct SunPlace {
 SunPlace advance_sun(double zenith_deg, double azimuth_deg, double latitude_deg, double seconds);
 
 // The camera and the sun in the camera's local frame, for the shader.
-CameraRays camera_rays(const CameraPose& pose, const Scene& scene, double time_s, glm::uvec2 size, uint32_t seed, uint32_t frame);
+CameraRays camera_rays(const CameraPose& pose, const Scene& scene, double time_s, glm::uvec2 size, uint32_t seed,
+                       uint32_t frame);
 
 // The pose as a view of a scene, so that a screenshot can restore it.
 View view_of(const CameraPose& pose, double ground_radius_km);

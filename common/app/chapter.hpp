@@ -43,7 +43,7 @@ struct Frame {
   gpu::Timer& timer;
   uint32_t index;
   uint32_t seed;
-  double seconds;  // since the frame before; 0 for the first
+  double seconds;               // since the frame before; 0 for the first
   glm::dvec3 position_km{0.0};  // of the camera, in the global frame of camera.hpp
 };
 
@@ -69,18 +69,21 @@ struct Program {
   virtual std::vector<ProbeResult> probe(std::span<const ProbeRay> rays);
   // What --explain prints beside passes and bytes: whole lines, or nothing.
   virtual std::string explain() const { return {}; }
-  // An intermediate image for --dump: rgba32f or rgba16f, 2-D, left in layout GENERAL. nullptr: there is none of this name.
+  // An intermediate image for --dump: rgba32f or rgba16f, 2-D, left in layout GENERAL. nullptr: there is none of this
+  // name.
   virtual const gpu::Image* image(const std::string& name) const;
 };
 
-// Turns the linear picture into 8 bits. The framework's own shows values raw or exposed, until chapter 06 teaches better.
+// Turns the linear picture into 8 bits. The framework's own shows values raw or exposed, until chapter 06 teaches
+// better.
 struct DisplaySystem {
   virtual ~DisplaySystem() = default;
-  // Before the first draw and after every resize, when no frame is in flight. Both are storage images in layout GENERAL.
+  // Before the first draw and after every resize, when no frame is in flight. Both are storage images in layout
+  // GENERAL.
   virtual void set_images(const gpu::Image& picture, const gpu::Image& displayed) = 0;
   // Records its timed passes. The picture may be read, and `displayed` written, by compute without a barrier.
   virtual void draw(const Frame& frame) = 0;
-  virtual void rebuild() = 0;  // as Program::rebuild
+  virtual void rebuild() = 0;                         // as Program::rebuild
   virtual std::string explain() const { return {}; }  // as Program::explain
 };
 
@@ -108,12 +111,12 @@ struct Chapter {
   std::string whats_new;  // one line for --help and the panel
   std::string try_next;   // a command worth typing after the first picture
   Display display = Display::exposed;
-  bool sky = false;       // has scene knobs (mie.g, sun.zenith_deg, …)
-  bool stochastic = false;  // a probe's radiance has a standard error
+  bool sky = false;                 // has scene knobs (mie.g, sun.zenith_deg, …)
+  bool stochastic = false;          // a probe's radiance has a standard error
   std::vector<std::string> images;  // names Program::image knows
   std::vector<Knob> knobs;
   std::vector<std::pair<std::string, std::string>> reference;  // knob values the sweep's reference is drawn with
-  std::optional<Truth> truth;  // what a window measures its view against
+  std::optional<Truth> truth;                                  // what a window measures its view against
   std::string default_scene = "noon";
   std::vector<StandardView> standard_views;
   std::function<std::unique_ptr<WindowSystem>()> window;  // none: the chapter draws into files only

@@ -1,6 +1,5 @@
 // The command line, with CLI11 (whose header is slow to compile and so appears here only). See options.hpp.
 #include <CLI/CLI.hpp>
-
 #include <cctype>
 #include <cmath>
 #include <filesystem>
@@ -18,10 +17,14 @@ constexpr uint32_t kMaximumSide = 16384;
 VkExtent2D parse_size(const std::string& text) {
   const size_t cross = text.find('x');
   double width = 0.0, height = 0.0;
-  const bool numbers = cross != std::string::npos && parse_number(text.substr(0, cross), width) && parse_number(text.substr(cross + 1), height);
-  const auto side = [](double v) { return v >= 1.0 && v <= kMaximumSide && v == static_cast<double>(static_cast<uint32_t>(v)); };
+  const bool numbers = cross != std::string::npos && parse_number(text.substr(0, cross), width) &&
+                       parse_number(text.substr(cross + 1), height);
+  const auto side = [](double v) {
+    return v >= 1.0 && v <= kMaximumSide && v == static_cast<double>(static_cast<uint32_t>(v));
+  };
   if (!numbers || !side(width) || !side(height))
-    fail("--size {}: expected WIDTHxHEIGHT in whole pixels, each from 1 to {}, for example --size 1280x720", text, kMaximumSide);
+    fail("--size {}: expected WIDTHxHEIGHT in whole pixels, each from 1 to {}, for example --size 1280x720", text,
+         kMaximumSide);
   return {static_cast<uint32_t>(width), static_cast<uint32_t>(height)};
 }
 
@@ -43,7 +46,8 @@ std::string range_of(const Knob& knob) {
 std::string describe_knobs(const char* heading, const std::vector<Knob>& knobs) {
   std::string text = heading;
   for (const Knob& knob : knobs) {
-    const std::string initial = knob.choices.empty() ? fmt::format("{:g}", knob.initial) : knob.choices.at(static_cast<size_t>(knob.initial));
+    const std::string initial =
+        knob.choices.empty() ? fmt::format("{:g}", knob.initial) : knob.choices.at(static_cast<size_t>(knob.initial));
     text += fmt::format("\n  {:<22} {} [{}; default {}]", knob.name, knob.meaning, range_of(knob), initial);
   }
   return text;
@@ -55,9 +59,11 @@ std::string footer(const Chapter& chapter) {
   if (chapter.sky) {
     Scene scene;
     scene.media.push_back({.kind = "mie", .phase = Phase::cornette_shanks, .g = 0.8});
-    text += "\n" + describe_knobs("Of the scene (default: what the scene says; here the neutral values):", scene_knobs(scene));
+    text += "\n" +
+            describe_knobs("Of the scene (default: what the scene says; here the neutral values):", scene_knobs(scene));
   }
-  return text + "\nExit codes: 0 ok, 1 mismatch, 2 usage or bad input, 3 validation message, 77 skipped (no Vulkan device).";
+  return text +
+         "\nExit codes: 0 ok, 1 mismatch, 2 usage or bad input, 3 validation message, 77 skipped (no Vulkan device).";
 }
 
 }  // namespace
@@ -70,28 +76,69 @@ bool parse_options(int argc, char** argv, const Chapter& chapter, Options& optio
   std::vector<std::string> set, dump;
 
   cli.add_flag("--list-gpus", options.list_gpus, "List the Vulkan devices and stop")->group("device");
-  cli.add_option("--gpu", options.gpu, "Device to use: its number in --list-gpus or part of its name")->type_name("N|NAME")->group("device");
-  cli.add_option("--validation", validation, "Validation layers: off, on, sync")->type_name("off|on|sync")->group("device");
-  cli.add_flag("--require-gpu", options.require_gpu, "No Vulkan device is an error (exit 2), not a skip (exit 77)")->group("device");
+  cli.add_option("--gpu", options.gpu, "Device to use: its number in --list-gpus or part of its name")
+      ->type_name("N|NAME")
+      ->group("device");
+  cli.add_option("--validation", validation, "Validation layers: off, on, sync")
+      ->type_name("off|on|sync")
+      ->group("device");
+  cli.add_flag("--require-gpu", options.require_gpu, "No Vulkan device is an error (exit 2), not a skip (exit 77)")
+      ->group("device");
   cli.add_flag("--headless", options.headless, "Draw without a window, into a file")->group("picture");
   cli.add_option("--size", size, "Picture size in pixels [1280x720]")->type_name("WxH")->group("picture");
-  cli.add_option("--frames", frames_text, "Frames to draw, then stop [headless 1; window: until closed]")->type_name("N")->group("picture");
-  cli.add_option("--scene", options.scene, fmt::format("Scene by name, .toml file, or a picture a chapter wrote [{}]", chapter.default_scene))->type_name("NAME|FILE")->group("picture");
+  cli.add_option("--frames", frames_text, "Frames to draw, then stop [headless 1; window: until closed]")
+      ->type_name("N")
+      ->group("picture");
+  cli.add_option("--scene", options.scene,
+                 fmt::format("Scene by name, .toml file, or a picture a chapter wrote [{}]", chapter.default_scene))
+      ->type_name("NAME|FILE")
+      ->group("picture");
   cli.add_option("--view", options.view, "View of the scene [its first]")->type_name("NAME")->group("picture");
-  cli.add_option("--set", set, "Set a knob (repeatable)")->type_name("key=value")->allow_extra_args(false)->group("picture");
+  cli.add_option("--set", set, "Set a knob (repeatable)")
+      ->type_name("key=value")
+      ->allow_extra_args(false)
+      ->group("picture");
   cli.add_option("--seed", seed_text, "Seed of everything random [1]")->type_name("N")->group("picture");
-  cli.add_option("--time", time_text, "Seconds after the scene's moment: the sun moves 15 degrees an hour [0]")->type_name("T")->group("picture");
-  cli.add_option("--output", options.output, "Write the (last) picture: .png displayed, .exr linear [out/" + chapter.name + ".png]")->type_name("FILE")->group("output");
-  cli.add_option("--dump", dump, "Write 'picture' (.exr), 'displayed' (.png), 'knobs' (.json)" +
-                                 (chapter.images.empty() ? std::string() : fmt::format(", or an image (.exr, or .png as exposed): {}", fmt::join(chapter.images, ", "))))->type_name("WHAT FILE")->expected(2)->group("output");
-  cli.add_flag("--explain", options.explain, "Say which effects are simulated, why, with passes, bytes and time")->group("output");
-  cli.add_option("--bench", options.bench, "Measure repeated frames and write JSON")->type_name("FILE.json")->group("measure");
-  cli.add_option("--sweep", options.sweep, "Measure error against time over the knobs' ladders and write CSV")->type_name("FILE.csv")->group("measure");
-  cli.add_option("--probe", options.probe, "Rays to evaluate: altitude_km,view_zenith_deg,sun_zenith_deg,relative_azimuth_deg")->type_name("RAYS.csv")->group("measure");
-  cli.add_option("--probe-out", options.probe_out, "Where the rays' radiance and transmittance go")->type_name("FILE.csv")->group("measure");
-  cli.add_option("--against", options.against, "Print the errors of the picture against this one")->type_name("FILE.exr")->group("measure");
-  cli.add_option("--golden", golden, "Compare the standard views with the goldens, or write them anew")->type_name("check|update")->group("tests");
-  cli.add_option("--inject", options.inject, "Plant a fault: nan, missing-barrier, graph-barrier, wrong-constant, missing-feature")->type_name("FAULT")->group("tests");
+  cli.add_option("--time", time_text, "Seconds after the scene's moment: the sun moves 15 degrees an hour [0]")
+      ->type_name("T")
+      ->group("picture");
+  cli.add_option("--output", options.output,
+                 "Write the (last) picture: .png displayed, .exr linear [out/" + chapter.name + ".png]")
+      ->type_name("FILE")
+      ->group("output");
+  cli.add_option("--dump", dump,
+                 "Write 'picture' (.exr), 'displayed' (.png), 'knobs' (.json)" +
+                     (chapter.images.empty() ? std::string()
+                                             : fmt::format(", or an image (.exr, or .png as exposed): {}",
+                                                           fmt::join(chapter.images, ", "))))
+      ->type_name("WHAT FILE")
+      ->expected(2)
+      ->group("output");
+  cli.add_flag("--explain", options.explain, "Say which effects are simulated, why, with passes, bytes and time")
+      ->group("output");
+  cli.add_option("--bench", options.bench, "Measure repeated frames and write JSON")
+      ->type_name("FILE.json")
+      ->group("measure");
+  cli.add_option("--sweep", options.sweep, "Measure error against time over the knobs' ladders and write CSV")
+      ->type_name("FILE.csv")
+      ->group("measure");
+  cli.add_option("--probe", options.probe,
+                 "Rays to evaluate: altitude_km,view_zenith_deg,sun_zenith_deg,relative_azimuth_deg")
+      ->type_name("RAYS.csv")
+      ->group("measure");
+  cli.add_option("--probe-out", options.probe_out, "Where the rays' radiance and transmittance go")
+      ->type_name("FILE.csv")
+      ->group("measure");
+  cli.add_option("--against", options.against, "Print the errors of the picture against this one")
+      ->type_name("FILE.exr")
+      ->group("measure");
+  cli.add_option("--golden", golden, "Compare the standard views with the goldens, or write them anew")
+      ->type_name("check|update")
+      ->group("tests");
+  cli.add_option("--inject", options.inject,
+                 "Plant a fault: nan, missing-barrier, graph-barrier, wrong-constant, missing-feature")
+      ->type_name("FAULT")
+      ->group("tests");
 
   try {
     cli.parse(argc, argv);
@@ -100,17 +147,20 @@ bool parse_options(int argc, char** argv, const Chapter& chapter, Options& optio
     return false;
   } catch (const CLI::ParseError& error) {
     std::string line = error.what();
-    std::replace_if(line.begin(), line.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
+    std::replace_if(
+        line.begin(), line.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
     fail("{}; see {} --help", line, chapter.name);
   }
 
   for (const CLI::Option* option : cli.get_options())
     for (const std::string& value : option->results())
       if (value.empty()) fail("{}: the value is empty; see {} --help", option->get_name(), chapter.name);
-  const int modes = !options.bench.empty() + !options.sweep.empty() + !options.probe.empty() + !golden.empty() + options.list_gpus +
-                    (options.explain || !options.against.empty() || !dump.empty());
+  const int modes = !options.bench.empty() + !options.sweep.empty() + !options.probe.empty() + !golden.empty() +
+                    options.list_gpus + (options.explain || !options.against.empty() || !dump.empty());
   if (modes > 1)
-    fail("one thing at a time: --list-gpus, --bench, --sweep, --probe, --golden, or a picture with --explain, --dump, --against");
+    fail(
+        "one thing at a time: --list-gpus, --bench, --sweep, --probe, --golden, or a picture with --explain, --dump, "
+        "--against");
   if (!golden.empty() && (!set.empty() || (golden == "update" && !options.inject.empty())))
     fail("--golden draws the standard views as they are: without --set, and --golden update without --inject");
 
@@ -127,11 +177,15 @@ bool parse_options(int argc, char** argv, const Chapter& chapter, Options& optio
   if (cli.count("--time") > 0 && (!parse_number(time_text, options.time_s) || std::abs(options.time_s) > 1e9))
     fail("--time {}: expected seconds from -1e9 to 1e9", time_text);
   if (cli.count("--validation") > 0)
-    options.validation = parse_choice<gpu::Validation>("--validation", validation, {{"off", gpu::Validation::off}, {"on", gpu::Validation::on}, {"sync", gpu::Validation::sync}});
+    options.validation = parse_choice<gpu::Validation>(
+        "--validation", validation,
+        {{"off", gpu::Validation::off}, {"on", gpu::Validation::on}, {"sync", gpu::Validation::sync}});
   if (cli.count("--golden") > 0)
     options.golden = parse_choice<Golden>("--golden", golden, {{"check", Golden::check}, {"update", Golden::update}});
   if (cli.count("--inject") > 0)
-    parse_choice<int>("--inject", options.inject, {{"nan", 0}, {"missing-barrier", 0}, {"graph-barrier", 0}, {"wrong-constant", 0}, {"missing-feature", 0}});
+    parse_choice<int>(
+        "--inject", options.inject,
+        {{"nan", 0}, {"missing-barrier", 0}, {"graph-barrier", 0}, {"wrong-constant", 0}, {"missing-feature", 0}});
   for (const std::string& assignment : set) options.set.push_back(split_assignment(assignment));
   if (!dump.empty()) {
     std::vector<std::pair<std::string, int>> known{{"picture", 0}, {"displayed", 0}, {"knobs", 0}};
@@ -140,14 +194,16 @@ bool parse_options(int argc, char** argv, const Chapter& chapter, Options& optio
     options.dump_what = dump[0], options.dump_file = dump[1];
     const std::string extension = dump[0] == "knobs" ? ".json" : dump[0] == "displayed" ? ".png" : ".exr";
     const bool shown = dump[0] != "picture" && extension == ".exr" && options.dump_file.ends_with(".png");
-    if (!options.dump_file.ends_with(extension) && !shown) fail("--dump {} {}: the name must end in {}", dump[0], dump[1], extension);
+    if (!options.dump_file.ends_with(extension) && !shown)
+      fail("--dump {} {}: the name must end in {}", dump[0], dump[1], extension);
   }
   // Where results go is looked at before the work is done, not after.
   for (const std::string& file : {options.output, options.dump_file, options.bench, options.sweep, options.probe_out}) {
     if (file.empty()) continue;
     const std::filesystem::path target(file), parent = target.has_parent_path() ? target.parent_path() : ".";
     std::error_code ignored;
-    if (!std::filesystem::is_directory(parent, ignored)) fail("cannot write '{}': no directory '{}'", file, parent.string());
+    if (!std::filesystem::is_directory(parent, ignored))
+      fail("cannot write '{}': no directory '{}'", file, parent.string());
     if (std::filesystem::is_directory(target, ignored)) fail("cannot write '{}': it is a directory", file);
   }
   if (options.probe.empty() != options.probe_out.empty()) fail("--probe RAYS.csv and --probe-out FILE.csv go together");

@@ -22,11 +22,12 @@ namespace {
 
 constexpr uint32_t kWarmUp = 3;
 constexpr uint32_t kRepeats = 20;
-constexpr double kTimedSeconds = 3.0;  // no setting is repeated longer than this
+constexpr double kTimedSeconds = 3.0;    // no setting is repeated longer than this
 constexpr double kWarmUpSeconds = 0.15;  // on hardware: an idle GPU takes a tenth of a second to raise its clock
 constexpr VkExtent2D kSweepSize{320, 180};
 constexpr VkExtent2D kGoldenSize{128, 72};
-// How far another driver may be from a golden: see docs/hard_cases.md for the measured differences this leaves room for.
+// How far another driver may be from a golden: see docs/hard_cases.md for the measured differences this leaves room
+// for.
 constexpr double kGoldenRelativeRmse = 2e-3;
 constexpr double kGoldenP99 = 5e-3;
 
@@ -44,12 +45,16 @@ struct Timings {
 };
 
 // Warm-up (on hardware for kWarmUpSeconds at least), then repeated frames until `repeats` or kTimedSeconds, at least 3.
-Timings time_frames(const Session& session, Renderer& renderer, const CameraPose& pose, uint32_t warm_up, uint32_t repeats) {
+Timings time_frames(const Session& session, Renderer& renderer, const CameraPose& pose, uint32_t warm_up,
+                    uint32_t repeats) {
   using Clock = std::chrono::steady_clock;
-  const auto seconds_since = [](Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count(); };
+  const auto seconds_since = [](Clock::time_point then) {
+    return std::chrono::duration<double>(Clock::now() - then).count();
+  };
   const double wait = session.device.candidate().software ? 0.0 : kWarmUpSeconds;
   const Clock::time_point begin = Clock::now();
-  for (uint32_t i = 0; i < warm_up || seconds_since(begin) < wait; ++i) renderer.draw(pose, session.options.time_s, session.options.seed, i);
+  for (uint32_t i = 0; i < warm_up || seconds_since(begin) < wait; ++i)
+    renderer.draw(pose, session.options.time_s, session.options.seed, i);
   std::vector<std::string> names;
   std::vector<std::vector<double>> per_pass;
   std::vector<double> gpu, wall;
@@ -71,7 +76,8 @@ Timings time_frames(const Session& session, Renderer& renderer, const CameraPose
     if (i >= 2 && seconds_since(start) > kTimedSeconds) break;
   }
   Timings timings{.gpu = measure::spread(gpu), .wall = measure::spread(wall)};
-  for (size_t pass = 0; pass < names.size(); ++pass) timings.passes.push_back({names[pass], measure::spread(per_pass[pass])});
+  for (size_t pass = 0; pass < names.size(); ++pass)
+    timings.passes.push_back({names[pass], measure::spread(per_pass[pass])});
   return timings;
 }
 
@@ -82,8 +88,13 @@ struct OtherScene {
   Options options;
   Session session;
   OtherScene(const Session& from, const StandardView& view)
-      : options(from.options),
-        session{from.chapter, options, scene, settings, from.instance, from.device, {from.device, scene, settings, options.inject}} {
+      : options(from.options), session{from.chapter,
+                                       options,
+                                       scene,
+                                       settings,
+                                       from.instance,
+                                       from.device,
+                                       {from.device, scene, settings, options.inject}} {
     options.view = view.view;
     load_scene_and_settings(from.chapter, view.scene, options.set, scene, settings);
   }
@@ -99,8 +110,11 @@ std::vector<double> pipeline_values(const std::vector<double>& values, const Set
 }
 
 // Settings that share their pipelines stand together: making one can take a second.
-std::vector<std::vector<double>> ordered_by_pipeline(std::vector<std::vector<double>> ladder, const Settings& settings) {
-  std::stable_sort(ladder.begin(), ladder.end(), [&](const auto& a, const auto& b) { return pipeline_values(a, settings) < pipeline_values(b, settings); });
+std::vector<std::vector<double>> ordered_by_pipeline(std::vector<std::vector<double>> ladder,
+                                                     const Settings& settings) {
+  std::stable_sort(ladder.begin(), ladder.end(), [&](const auto& a, const auto& b) {
+    return pipeline_values(a, settings) < pipeline_values(b, settings);
+  });
   return ladder;
 }
 
@@ -146,12 +160,24 @@ Exit run_bench(const Session& session) {
   const CameraPose pose = session.first_pose();
   const Timings timings = time_frames(session, renderer, pose, kWarmUp, repeats);
   const gpu::Candidate& device = session.device.candidate();
-  measure::BenchResult result{session.chapter.name, session.scene.name, session.scene.view(session.options.view).name, device.name,
-                              device.driver, device.software, renderer.size().width, renderer.size().height, {}, timings.passes,
-                              timings.wall, session.device.allocated_bytes(), static_cast<int>(kWarmUp),
-                              static_cast<int>(timings.wall.samples), now_utc()};
+  measure::BenchResult result{session.chapter.name,
+                              session.scene.name,
+                              session.scene.view(session.options.view).name,
+                              device.name,
+                              device.driver,
+                              device.software,
+                              renderer.size().width,
+                              renderer.size().height,
+                              {},
+                              timings.passes,
+                              timings.wall,
+                              session.device.allocated_bytes(),
+                              static_cast<int>(kWarmUp),
+                              static_cast<int>(timings.wall.samples),
+                              now_utc()};
   for (const Knob& knob : session.settings.knobs()) result.settings[knob.name] = session.settings.text(knob.name);
-  if (!session.options.output.empty()) write_output(session, session.options.output, pose, renderer.picture(), renderer.displayed());
+  if (!session.options.output.empty())
+    write_output(session, session.options.output, pose, renderer.picture(), renderer.displayed());
   measure::write_bench(session.options.bench, result);
   fmt::print("{}", measure::bench_table(result));
   return Exit::ok;
@@ -188,7 +214,9 @@ Exit run_sweep(const Session& session) {
       if (pipeline_values(values, base) != compiled || compiled.empty()) renderer.rebuild();
       compiled = pipeline_values(values, base);
       const Timings timings = time_frames(other.session, renderer, pose, 1, device.software ? 3 : kRepeats);
-      measure::SweepRow row{.view = standard.scene + "/" + standard.view, .gpu_ms = timings.gpu, .wall_ms = timings.wall,
+      measure::SweepRow row{.view = standard.scene + "/" + standard.view,
+                            .gpu_ms = timings.gpu,
+                            .wall_ms = timings.wall,
                             .bytes = session.device.allocated_bytes(),
                             .errors = measure::compare(renderer.picture(), reference, display)};
       for (const Knob& knob : session.chapter.knobs) row.values.push_back(other.settings.text(knob.name));
@@ -198,8 +226,8 @@ Exit run_sweep(const Session& session) {
     }
   }
   measure::write_sweep_csv(session.options.sweep, session.chapter.knobs, rows,
-                           {session.chapter.name, "standard views", device.name, device.driver, device.software, size.width,
-                            size.height, describe_reference(session.chapter), now_utc()});
+                           {session.chapter.name, "standard views", device.name, device.driver, device.software,
+                            size.width, size.height, describe_reference(session.chapter), now_utc()});
   fmt::print("{} settings x {} views -> {}\n", rungs, session.chapter.standard_views.size(), session.options.sweep);
   return Exit::ok;
 }
@@ -212,7 +240,8 @@ Exit run_probe(const Session& session) {
     const std::vector<double>& column = table.column(name);
     for (size_t row = 0; row < table.rows; ++row) {
       if (!(column[row] >= low && column[row] <= high))
-        fail("{}: row {}: {} is {:g}; accepted is {:g} to {:g}", session.options.probe, row + 1, name, column[row], low, high);
+        fail("{}: row {}: {} is {:g}; accepted is {:g} to {:g}", session.options.probe, row + 1, name, column[row], low,
+             high);
       rays[row].*field = column[row];
     }
   };
@@ -223,18 +252,23 @@ Exit run_probe(const Session& session) {
 
   const std::vector<ProbeResult> results = session.make_program()->probe(rays);
   std::vector<std::string> names = inputs;
-  for (const char* name : {"radiance_r", "radiance_g", "radiance_b", "transmittance_r", "transmittance_g", "transmittance_b"}) names.push_back(name);
+  for (const char* name :
+       {"radiance_r", "radiance_g", "radiance_b", "transmittance_r", "transmittance_g", "transmittance_b"})
+    names.push_back(name);
   if (session.chapter.stochastic)
     for (const char* name : {"standard_error_r", "standard_error_g", "standard_error_b"}) names.push_back(name);
   std::vector<std::vector<std::string>> rows(table.rows);
   for (size_t row = 0; row < table.rows; ++row) {
-    for (const std::string& name : inputs) rows[row].push_back(table.fields[table.index(name)][row]);  // as they were written
+    for (const std::string& name : inputs)
+      rows[row].push_back(table.fields[table.index(name)][row]);  // as they were written
     for (int c = 0; c < 3; ++c) rows[row].push_back(fmt::format("{:.9e}", results[row].radiance[c]));
     for (int c = 0; c < 3; ++c) rows[row].push_back(fmt::format("{:.9e}", results[row].transmittance[c]));
-    for (int c = 0; session.chapter.stochastic && c < 3; ++c) rows[row].push_back(fmt::format("{:.9e}", results[row].standard_error[c]));
+    for (int c = 0; session.chapter.stochastic && c < 3; ++c)
+      rows[row].push_back(fmt::format("{:.9e}", results[row].standard_error[c]));
   }
   write_csv(session.options.probe_out,
-            {fmt::format("{} scene {}, {} ({})", session.chapter.name, session.scene.name, session.device.candidate().name, session.device.candidate().driver),
+            {fmt::format("{} scene {}, {} ({})", session.chapter.name, session.scene.name,
+                         session.device.candidate().name, session.device.candidate().driver),
              "radiance for the scene's solar irradiance (1 unless it says otherwise), without the sun's disc"},
             names, rows);
   fmt::print("{} rays -> {}\n", table.rows, session.options.probe_out);
@@ -266,12 +300,17 @@ Exit run_golden(const Session& session) {
       // Bit for bit on the driver that made it; elsewhere arithmetic differs in the last places.
       const bool same_driver = std::filesystem::exists(recorded) && read_file(recorded, 4096) == driver + "\n";
       const Image golden = image::read_exr(file);
-      const measure::Errors errors = measure::compare(picture, golden, [](const glm::vec3& v) { return image::display(v, kBaseExposure); });
+      const measure::Errors errors =
+          measure::compare(picture, golden, [](const glm::vec3& v) { return image::display(v, kBaseExposure); });
       const bool identical = errors.finite() && errors.max_relative == 0.0;
-      const bool close = errors.finite() && errors.relative_rmse <= kGoldenRelativeRmse && errors.p99_relative <= kGoldenP99;
+      const bool close =
+          errors.finite() && errors.relative_rmse <= kGoldenRelativeRmse && errors.p99_relative <= kGoldenP99;
       const bool good = same_driver ? identical : close;
-      fmt::print("golden {}: {} ({}; {})\n", name, identical ? "identical" : good ? "close" : "DIFFERS", measure::describe(errors),
-                 same_driver ? "driver of the golden" : "another driver");
+      fmt::print("golden {}: {} ({}; {})\n", name,
+                 identical ? "identical"
+                 : good    ? "close"
+                           : "DIFFERS",
+                 measure::describe(errors), same_driver ? "driver of the golden" : "another driver");
       if (!good && session.options.golden == Golden::check) result = Exit::mismatch;
     }
     if (session.options.golden == Golden::update) {

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <optional>
 
-#include "common/app/session.hpp"
 #include "common/app/progress.hpp"
+#include "common/app/session.hpp"
 #include "common/image/display.hpp"
 #include "common/image/exr.hpp"
 #include "common/image/png.hpp"
@@ -27,31 +27,40 @@ size_t count_not_finite(const Image& picture) {
 
 void print_times(const Session& session, Renderer& renderer) {
   const gpu::Candidate& device = session.device.candidate();
-  fmt::print("{:02} {} · scene {} · {}x{} · {} ({}{})\n", session.chapter.number, session.chapter.title, session.scene.name,
-             renderer.size().width, renderer.size().height, device.name, device.driver, device.software ? ", software" : "");
+  fmt::print("{:02} {} · scene {} · {}x{} · {} ({}{})\n", session.chapter.number, session.chapter.title,
+             session.scene.name, renderer.size().width, renderer.size().height, device.name, device.driver,
+             device.software ? ", software" : "");
   double total = 0.0;
   for (const gpu::PassTime& pass : renderer.pass_times()) {
     fmt::print("  {:<20} {:>10.3f} ms\n", pass.name, pass.milliseconds);
     total += pass.milliseconds;
   }
-  fmt::print("  {:<20} {:>10.3f} ms   {} held\n", "total", total, measure::human_bytes(session.device.allocated_bytes()));
+  fmt::print("  {:<20} {:>10.3f} ms   {} held\n", "total", total,
+             measure::human_bytes(session.device.allocated_bytes()));
 }
 
 void explain(const Session& session, const Program& program, Renderer& renderer, uint64_t allocations_by_later_frames) {
   fmt::print("effects of scene {}:\n", session.scene.name);
-  if (!session.chapter.sky) fmt::print("  none: this chapter draws no air\n");
-  else for (const Effect& effect : effects(session.scene)) fmt::print("  {:<14} {:<4} {}\n", effect.name, effect.on ? "on" : "off", effect.why);
+  if (!session.chapter.sky)
+    fmt::print("  none: this chapter draws no air\n");
+  else
+    for (const Effect& effect : effects(session.scene))
+      fmt::print("  {:<14} {:<4} {}\n", effect.name, effect.on ? "on" : "off", effect.why);
   fmt::print("passes:\n");
-  for (const gpu::PassTime& pass : renderer.pass_times()) fmt::print("  {:<20} {:>10.3f} ms\n", pass.name, pass.milliseconds);
+  for (const gpu::PassTime& pass : renderer.pass_times())
+    fmt::print("  {:<20} {:>10.3f} ms\n", pass.name, pass.milliseconds);
   fmt::print("{}{}", program.explain(), renderer.explain_display());
   fmt::print("memory:\n");
-  for (const gpu::Allocation& allocation : session.device.allocations()) fmt::print("  {:<20} {:>12} bytes\n", allocation.name, allocation.bytes);
-  fmt::print("  {:<20} {:>12} bytes\nallocations by frames after the first: {}\n", "total", session.device.allocated_bytes(), allocations_by_later_frames);
+  for (const gpu::Allocation& allocation : session.device.allocations())
+    fmt::print("  {:<20} {:>12} bytes\n", allocation.name, allocation.bytes);
+  fmt::print("  {:<20} {:>12} bytes\nallocations by frames after the first: {}\n", "total",
+             session.device.allocated_bytes(), allocations_by_later_frames);
 }
 
 Exit compare_with(const Session& session, const Image& picture, const Image& reference) {
   const float exposure = static_cast<float>(kBaseExposure * std::exp2(session.scene.post.exposure_ev));
-  const measure::Errors errors = measure::compare(picture, reference, [&](const glm::vec3& value) { return image::display(value, exposure); });
+  const measure::Errors errors =
+      measure::compare(picture, reference, [&](const glm::vec3& value) { return image::display(value, exposure); });
   fmt::print("against {}: {}\n", session.options.against, measure::describe(errors));
   return errors.finite() ? Exit::ok : Exit::mismatch;
 }
@@ -63,11 +72,13 @@ Exit run_picture(const Session& session) {
   std::optional<Image> reference;
   if (!options.against.empty()) reference = image::read_exr(options.against);  // said before the work is done
   const std::string file = options.output.empty() ? "out/" + session.chapter.name + ".png" : options.output;
-  const bool writes = !options.output.empty() || (!options.explain && options.against.empty() && options.dump_what.empty());
+  const bool writes =
+      !options.output.empty() || (!options.explain && options.against.empty() && options.dump_what.empty());
 
   const std::unique_ptr<Program> program = session.make_program();
   // Drivers compile a shader at its first dispatch: a picture of one workgroup takes that out of the times shown.
-  Renderer(session.context, session.chapter, *program, {8, 8}).draw(session.first_pose(), options.time_s, options.seed, 0);
+  Renderer(session.context, session.chapter, *program, {8, 8})
+      .draw(session.first_pose(), options.time_s, options.seed, 0);
   Renderer renderer(session.context, session.chapter, *program, options.size_given ? options.size : kHeadlessSize);
   const CameraPose pose = session.first_pose();
   const uint32_t frames = std::max(options.frames, options.explain ? 2u : 1u);
@@ -86,19 +97,27 @@ Exit run_picture(const Session& session) {
   if (options.dump_what == "displayed") image::write_png8(options.dump_file, renderer.displayed());
   if (std::count(session.chapter.images.begin(), session.chapter.images.end(), options.dump_what) > 0) {
     const gpu::Image* image = program->image(options.dump_what);
-    if (image == nullptr) fail("--dump {}: with this scene and these settings there is no such image", options.dump_what);
+    if (image == nullptr)
+      fail("--dump {}: with this scene and these settings there is no such image", options.dump_what);
     const Image content = read_picture(session.device, gpu::create_command_pool(session.device), *image);
-    if (options.dump_file.ends_with(".exr")) image::write_exr(options.dump_file, content);
-    else image::write_png8(options.dump_file, image::to_display(content, static_cast<float>(kBaseExposure * std::exp2(session.scene.post.exposure_ev))));
+    if (options.dump_file.ends_with(".exr"))
+      image::write_exr(options.dump_file, content);
+    else
+      image::write_png8(
+          options.dump_file,
+          image::to_display(content, static_cast<float>(kBaseExposure * std::exp2(session.scene.post.exposure_ev))));
   }
   if (writes) {
     if (options.output.empty()) std::filesystem::create_directories("out");
     write_output(session, file, pose, picture, renderer.displayed());
   }
-  if (options.explain) explain(session, *program, renderer, allocations);
-  else print_times(session, renderer);
+  if (options.explain)
+    explain(session, *program, renderer, allocations);
+  else
+    print_times(session, renderer);
   if (writes) fmt::print("wrote {}\n", file);
-  if (writes && options.output.empty() && !session.chapter.try_next.empty()) fmt::print("next: {}\n", session.chapter.try_next);
+  if (writes && options.output.empty() && !session.chapter.try_next.empty())
+    fmt::print("next: {}\n", session.chapter.try_next);
   const Exit compared = reference ? compare_with(session, picture, *reference) : Exit::ok;
   if (not_finite > 0) {
     std::fprintf(stderr, "%s: %zu pixels are not finite\n", session.chapter.name.c_str(), not_finite);

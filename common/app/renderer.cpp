@@ -21,7 +21,8 @@ struct DisplayPush {
 // Copies an image into host memory and hands the bytes over.
 template <typename T>
 void read_back(const gpu::Device& device, VkCommandPool pool, const gpu::Image& image, std::vector<T>& out) {
-  const gpu::Buffer buffer = gpu::create_buffer(device, "readback", out.size() * sizeof(T), VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Where::readback);
+  const gpu::Buffer buffer = gpu::create_buffer(device, "readback", out.size() * sizeof(T),
+                                                VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Where::readback);
   gpu::run_once(device, pool, [&](VkCommandBuffer commands) {
     gpu::image_barrier(commands, image.handle, gpu::kComputeWrite, gpu::kTransferRead);
     gpu::copy_image_to_buffer(commands, image, buffer);
@@ -51,7 +52,8 @@ class PlainDisplay : public DisplaySystem {
 
   void rebuild() override {
     pipeline_ = gpu::create_compute_pipeline(context_.device, "app/display.comp", {{0}, {1}}, sizeof(DisplayPush));
-    if (set_.handle == VK_NULL_HANDLE) set_ = gpu::create_descriptor_set(context_.device, pipeline_.set_layout, pipeline_.bindings);
+    if (set_.handle == VK_NULL_HANDLE)
+      set_ = gpu::create_descriptor_set(context_.device, pipeline_.set_layout, pipeline_.bindings);
   }
 
  private:
@@ -63,7 +65,9 @@ class PlainDisplay : public DisplaySystem {
 
 }  // namespace
 
-std::vector<ProbeResult> Program::probe(std::span<const ProbeRay>) { fail("--probe: this chapter has no sky to ask; chapters from 04 on do"); }
+std::vector<ProbeResult> Program::probe(std::span<const ProbeRay>) {
+  fail("--probe: this chapter has no sky to ask; chapters from 04 on do");
+}
 
 const gpu::Image* Program::image(const std::string&) const { return nullptr; }
 
@@ -73,12 +77,15 @@ std::unique_ptr<DisplaySystem> make_display_system(const Context& context, const
 }
 
 Targets create_targets(const gpu::Device& device, VkExtent2D size) {
-  return {gpu::create_image(device, "picture", size, VK_FORMAT_R32G32B32A32_SFLOAT, VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT),
-          gpu::create_image(device, "displayed", size, VK_FORMAT_R8G8B8A8_UNORM, VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT)};
+  return {gpu::create_image(device, "picture", size, VK_FORMAT_R32G32B32A32_SFLOAT,
+                            VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT),
+          gpu::create_image(device, "displayed", size, VK_FORMAT_R8G8B8A8_UNORM,
+                            VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT)};
 }
 
 // [frame]
-void record_frame(const Context& context, Program& program, DisplaySystem& display, const Targets& targets, const Frame& frame) {
+void record_frame(const Context& context, Program& program, DisplaySystem& display, const Targets& targets,
+                  const Frame& frame) {
   frame.timer.begin_frame(frame.commands);
   program.draw(frame);
   // The display pass reads what the chapter wrote; leaving this out is the fault the synchronization test plants.
@@ -107,7 +114,8 @@ void Renderer::draw(const CameraPose& pose, double time_s, uint32_t seed, uint32
   const CameraRays camera = camera_rays(pose, context_.scene, time_s, {size().width, size().height}, seed, index);
   gpu::begin_commands(commands_);
   const double seconds = index == 0 ? 0.0 : kHeadlessFrameSeconds;
-  record_frame(context_, program_, *display_, targets_, {commands_, targets_.picture, camera, timer_, index, seed, seconds, pose.position_km});
+  record_frame(context_, program_, *display_, targets_,
+               {commands_, targets_.picture, camera, timer_, index, seed, seconds, pose.position_km});
   gpu::end_commands(commands_);
   gpu::submit_and_wait(context_.device, commands_);
 }
@@ -121,7 +129,8 @@ Image read_picture(const gpu::Device& device, VkCommandPool pool, const gpu::Ima
   }
   std::vector<uint64_t> halves(picture.pixels.size());
   read_back(device, pool, image, halves);
-  std::transform(halves.begin(), halves.end(), picture.pixels.begin(), [](uint64_t four) { return glm::unpackHalf4x16(four); });
+  std::transform(halves.begin(), halves.end(), picture.pixels.begin(),
+                 [](uint64_t four) { return glm::unpackHalf4x16(four); });
   return picture;
 }
 

@@ -1,5 +1,5 @@
-// Draws frames of a chapter without a window: the target, the display pass, timestamps and readback. The window uses the
-// same recording, so that both show the same bits.
+// Draws frames of a chapter without a window: the target, the display pass, timestamps and readback. The window uses
+// the same recording, so that both show the same bits.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,8 @@ namespace welkin::app {
 // The chapter's way to 8 bits, or the framework's. See shaders/app/display.comp.
 std::unique_ptr<DisplaySystem> make_display_system(const Context& context, const Chapter& chapter);
 
-// Exposure factor at 0 stops: a clear noon sky of about 0.03 per unit solar irradiance comes out at middle grey and above.
+// Exposure factor at 0 stops: a clear noon sky of about 0.03 per unit solar irradiance comes out at middle grey and
+// above.
 inline constexpr double kBaseExposure = 24.0;
 
 // The images a frame is drawn into.
@@ -24,7 +25,8 @@ Targets create_targets(const gpu::Device& device, VkExtent2D size);
 
 // Records a whole frame: the chapter's passes into targets.picture, then the display pass into targets.displayed. Both
 // end in layout GENERAL, last written or read by compute.
-void record_frame(const Context& context, Program& program, DisplaySystem& display, const Targets& targets, const Frame& frame);
+void record_frame(const Context& context, Program& program, DisplaySystem& display, const Targets& targets,
+                  const Frame& frame);
 
 class Renderer {
  public:
@@ -34,7 +36,7 @@ class Renderer {
   void draw(const CameraPose& pose, double time_s, uint32_t seed, uint32_t index);
 
   std::vector<gpu::PassTime> pass_times() { return timer_.read(); }
-  Image picture();      // linear, with the fault --inject nan planted if asked
+  Image picture();  // linear, with the fault --inject nan planted if asked
   Image8 displayed();
   VkExtent2D size() const { return targets_.picture.size; }
   const gpu::Image& target() const { return targets_.picture; }

@@ -1,12 +1,13 @@
-// main() of every chapter: from the command line to the mode asked for, and from any Error to one line and an exit code.
+// main() of every chapter: from the command line to the mode asked for, and from any Error to one line and an exit
+// code.
 #include <cstdio>
 #include <cstdlib>
 
 #include "common/app/session.hpp"
 #include "common/gpu/shader_file.hpp"
 #include "common/image/atomic_file.hpp"
-#include "common/image/png.hpp"
 #include "common/image/exr.hpp"
+#include "common/image/png.hpp"
 #include "common/measure/knobs_json.hpp"
 #include "common/scene/one_line.hpp"
 #include "common/scene/scene_knobs.hpp"
@@ -15,22 +16,28 @@ namespace welkin::app {
 namespace {
 
 bool display_announced() {
-  const auto set = [](const char* name) { const char* value = std::getenv(name); return value != nullptr && *value != '\0'; };
+  const auto set = [](const char* name) {
+    const char* value = std::getenv(name);
+    return value != nullptr && *value != '\0';
+  };
   return set("DISPLAY") || set("WAYLAND_DISPLAY");
 }
 
 void print_devices(const std::vector<gpu::Candidate>& candidates) {
   for (size_t i = 0; i < candidates.size(); ++i)
-    fmt::print("{} {} ({}){}{}\n", i, candidates[i].name, candidates[i].driver, candidates[i].software ? " software" : "",
+    fmt::print("{} {} ({}){}{}\n", i, candidates[i].name, candidates[i].driver,
+               candidates[i].software ? " software" : "",
                candidates[i].lacks.empty() ? "" : fmt::format(" lacks {}", fmt::join(candidates[i].lacks, ", ")));
 }
 
 Exit run_mode(const Chapter& chapter, Options& options) {
   const bool instrument = !options.bench.empty() || !options.sweep.empty() || !options.probe.empty() ||
-                          options.golden != Golden::none || options.explain || !options.against.empty() || !options.dump_what.empty();
+                          options.golden != Golden::none || options.explain || !options.against.empty() ||
+                          !options.dump_what.empty();
   Scene scene;
   Settings settings;
-  load_scene_and_settings(chapter, options.scene.empty() ? chapter.default_scene : options.scene, options.set, scene, settings);
+  load_scene_and_settings(chapter, options.scene.empty() ? chapter.default_scene : options.scene, options.set, scene,
+                          settings);
   scene.view(options.view);  // an unknown view is said before any device is looked for
   if (options.dump_what == "knobs") {
     measure::write_knobs_json(options.dump_file, chapter.name, settings.knobs());
@@ -40,7 +47,8 @@ Exit run_mode(const Chapter& chapter, Options& options) {
   // [devices]
   const bool windowed = chapter.window && !options.headless && !instrument && !options.list_gpus && display_announced();
   const std::unique_ptr<WindowSystem> window_system = windowed ? chapter.window() : nullptr;
-  gpu::Instance instance(options.validation, windowed ? window_system->vulkan_extensions() : std::vector<const char*>{});
+  gpu::Instance instance(options.validation,
+                         windowed ? window_system->vulkan_extensions() : std::vector<const char*>{});
   const std::vector<gpu::Candidate> candidates = gpu::list_devices(instance, options.inject);
   if (options.list_gpus) {
     print_devices(candidates);
@@ -51,15 +59,22 @@ Exit run_mode(const Chapter& chapter, Options& options) {
 
   Session session{chapter, options, scene, settings, instance, device, {device, scene, settings, options.inject}};
   Exit result = Exit::ok;
-  if (options.golden != Golden::none) result = run_golden(session);
-  else if (!options.probe.empty()) result = run_probe(session);
-  else if (!options.sweep.empty()) result = run_sweep(session);
-  else if (!options.bench.empty()) result = run_bench(session);
-  else if (windowed) result = window_system->show(session);
-  else result = run_picture(session);
+  if (options.golden != Golden::none)
+    result = run_golden(session);
+  else if (!options.probe.empty())
+    result = run_probe(session);
+  else if (!options.sweep.empty())
+    result = run_sweep(session);
+  else if (!options.bench.empty())
+    result = run_bench(session);
+  else if (windowed)
+    result = window_system->show(session);
+  else
+    result = run_picture(session);
 
   if (result == Exit::ok && !instance.validation_messages().empty()) {
-    std::fprintf(stderr, "%s: %zu validation message(s)\n", chapter.name.c_str(), instance.validation_messages().size());
+    std::fprintf(stderr, "%s: %zu validation message(s)\n", chapter.name.c_str(),
+                 instance.validation_messages().size());
     result = Exit::validation;
   }
   return result;
@@ -70,7 +85,8 @@ Exit run_mode(const Chapter& chapter, Options& options) {
 std::filesystem::path scenes_directory() { return gpu::source_directory() / "chapters" / "scenes"; }
 
 void load_scene_and_settings(const Chapter& chapter, const std::string& scene_name,
-                             const std::vector<std::pair<std::string, std::string>>& set, Scene& scene, Settings& settings) {
+                             const std::vector<std::pair<std::string, std::string>>& set, Scene& scene,
+                             Settings& settings) {
   scene = load_scene(scene_name, scenes_directory());
   std::vector<Knob> knobs = chapter.knobs;
   if (chapter.sky) knobs = joined(std::move(knobs), scene_knobs(scene));
@@ -84,7 +100,8 @@ void load_scene_and_settings(const Chapter& chapter, const std::string& scene_na
 
 std::string restoring_text(const Session& session, const CameraPose& pose) {
   Scene scene = session.scene;
-  const SunPlace sun = advance_sun(scene.sun.zenith_deg, scene.sun.azimuth_deg, scene.sun.latitude_deg, session.options.time_s);
+  const SunPlace sun =
+      advance_sun(scene.sun.zenith_deg, scene.sun.azimuth_deg, scene.sun.latitude_deg, session.options.time_s);
   scene.sun.zenith_deg = sun.zenith_deg, scene.sun.azimuth_deg = sun.azimuth_deg;
   std::erase_if(scene.views, [](const View& view) { return view.name == "restored"; });
   scene.views.insert(scene.views.begin(), view_of(pose, scene.planet.ground_radius_km));
@@ -94,9 +111,11 @@ std::string restoring_text(const Session& session, const CameraPose& pose) {
   return write_scene(scene);
 }
 
-void write_output(const Session& session, const std::string& file, const CameraPose& pose, const Image& picture, const Image8& displayed) {
+void write_output(const Session& session, const std::string& file, const CameraPose& pose, const Image& picture,
+                  const Image8& displayed) {
   if (file.ends_with(".exr")) return image::write_exr(file, picture);
-  image::write_png8(file, displayed, {{"welkin.scene", restoring_text(session, pose)}, {"welkin.chapter", session.chapter.name}});
+  image::write_png8(file, displayed,
+                    {{"welkin.scene", restoring_text(session, pose)}, {"welkin.chapter", session.chapter.name}});
 }
 
 int run(int argc, char** argv, const Chapter& chapter) {
@@ -110,7 +129,8 @@ int run(int argc, char** argv, const Chapter& chapter) {
     return static_cast<int>(result);
   } catch (const Error& error) {
     const bool skipped = error.exit_code == Exit::skipped && !require_gpu;
-    std::fprintf(stderr, "%s: %s%s\n", chapter.name.c_str(), skipped ? "skipped: " : "", one_line(error.what()).c_str());
+    std::fprintf(stderr, "%s: %s%s\n", chapter.name.c_str(), skipped ? "skipped: " : "",
+                 one_line(error.what()).c_str());
     return static_cast<int>(error.exit_code == Exit::skipped && require_gpu ? Exit::usage : error.exit_code);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s: %s\n", chapter.name.c_str(), one_line(error.what()).c_str());

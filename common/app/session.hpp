@@ -27,13 +27,15 @@ std::filesystem::path scenes_directory();
 // Scene by name or file with its [settings], then --set, all checked. Fills settings with the chapter's knobs and the
 // scene's, and applies the scene's knobs to the scene.
 void load_scene_and_settings(const Chapter& chapter, const std::string& scene_name,
-                             const std::vector<std::pair<std::string, std::string>>& set, Scene& scene, Settings& settings);
+                             const std::vector<std::pair<std::string, std::string>>& set, Scene& scene,
+                             Settings& settings);
 
 // The scene with the camera and every explicit setting, as the text a screenshot carries.
 std::string restoring_text(const Session& session, const CameraPose& pose);
 
 // Writes the picture where --output says: .exr linear, .png displayed and restoring.
-void write_output(const Session& session, const std::string& file, const CameraPose& pose, const Image& picture, const Image8& displayed);
+void write_output(const Session& session, const std::string& file, const CameraPose& pose, const Image& picture,
+                  const Image8& displayed);
 
 // A view as the chapter's truth shows it; the chapter has one. Without its display pass, whatever that is.
 Image draw_truth(const Session& session, const CameraPose& pose, VkExtent2D size, uint32_t seed);

@@ -16,9 +16,8 @@ void image_barrier(VkCommandBuffer commands, VkImage image, Use before, Use afte
                                       .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
                                       .image = image,
                                       .subresourceRange = {aspect, 0, 1, 0, 1}};
-  const VkDependencyInfo info{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
-                              .imageMemoryBarrierCount = 1,
-                              .pImageMemoryBarriers = &barrier};
+  const VkDependencyInfo info{
+      .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &barrier};
   vkCmdPipelineBarrier2(commands, &info);
 }
 // [/barrier]
@@ -34,9 +33,8 @@ void buffer_barrier(VkCommandBuffer commands, VkBuffer buffer, Use before, Use a
                                        .buffer = buffer,
                                        .offset = 0,
                                        .size = VK_WHOLE_SIZE};
-  const VkDependencyInfo info{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
-                              .bufferMemoryBarrierCount = 1,
-                              .pBufferMemoryBarriers = &barrier};
+  const VkDependencyInfo info{
+      .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .bufferMemoryBarrierCount = 1, .pBufferMemoryBarriers = &barrier};
   vkCmdPipelineBarrier2(commands, &info);
 }
 
@@ -73,8 +71,10 @@ void submit_and_wait(const Device& device, VkCommandBuffer commands) {
   VkFence raw = VK_NULL_HANDLE;
   check(vkCreateFence(device, &fence_info, nullptr, &raw), "vkCreateFence");
   const Fence fence(device, raw);
-  const VkCommandBufferSubmitInfo buffer{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO, .commandBuffer = commands};
-  const VkSubmitInfo2 submit{.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2, .commandBufferInfoCount = 1, .pCommandBufferInfos = &buffer};
+  const VkCommandBufferSubmitInfo buffer{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
+                                         .commandBuffer = commands};
+  const VkSubmitInfo2 submit{
+      .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2, .commandBufferInfoCount = 1, .pCommandBufferInfos = &buffer};
   check(vkQueueSubmit2(device.queue(), 1, &submit, fence), "vkQueueSubmit2");
   check(vkWaitForFences(device, 1, fence.address(), VK_TRUE, UINT64_MAX), "vkWaitForFences");
 }

@@ -10,7 +10,8 @@ namespace {
 
 constexpr uint32_t kNoFamily = ~0u;
 
-// One queue does everything here: compute, triangles, copies. Every desktop driver and lavapipe has such a family first.
+// One queue does everything here: compute, triangles, copies. Every desktop driver and lavapipe has such a family
+// first.
 uint32_t find_queue_family(VkPhysicalDevice device, uint32_t* timestamp_bits = nullptr) {
   uint32_t count = 0;
   vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
@@ -29,7 +30,8 @@ uint32_t find_queue_family(VkPhysicalDevice device, uint32_t* timestamp_bits = n
 std::vector<std::string> missing_features(VkPhysicalDevice device, uint32_t api_version) {
   std::vector<std::string> lacks;
   if (api_version < VK_API_VERSION_1_3)
-    return {fmt::format("Vulkan 1.3 (offers {}.{})", VK_API_VERSION_MAJOR(api_version), VK_API_VERSION_MINOR(api_version))};
+    return {
+        fmt::format("Vulkan 1.3 (offers {}.{})", VK_API_VERSION_MAJOR(api_version), VK_API_VERSION_MINOR(api_version))};
   VkPhysicalDeviceVulkan13Features v13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
   VkPhysicalDeviceVulkan12Features v12{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES, .pNext = &v13};
   VkPhysicalDeviceFeatures2 features{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &v12};
@@ -56,8 +58,9 @@ int rank(const Candidate& candidate) {
 std::string offered(const std::vector<Candidate>& candidates) {
   std::vector<std::string> lines;
   for (size_t i = 0; i < candidates.size(); ++i)
-    lines.push_back(fmt::format("{} {}{}", i, candidates[i].name,
-                                candidates[i].lacks.empty() ? "" : fmt::format(" (lacks {})", fmt::join(candidates[i].lacks, ", "))));
+    lines.push_back(fmt::format(
+        "{} {}{}", i, candidates[i].name,
+        candidates[i].lacks.empty() ? "" : fmt::format(" (lacks {})", fmt::join(candidates[i].lacks, ", "))));
   return fmt::format("{}", fmt::join(lines, "; "));
 }
 
@@ -67,7 +70,8 @@ std::vector<Candidate> list_devices(VkInstance instance, const std::string& inje
   uint32_t count = 0;
   const VkResult result = vkEnumeratePhysicalDevices(instance, &count, nullptr);
   std::vector<VkPhysicalDevice> handles(result >= 0 ? count : 0);
-  if (!handles.empty()) check(vkEnumeratePhysicalDevices(instance, &count, handles.data()), "vkEnumeratePhysicalDevices");
+  if (!handles.empty())
+    check(vkEnumeratePhysicalDevices(instance, &count, handles.data()), "vkEnumeratePhysicalDevices");
   std::vector<Candidate> candidates;
   for (VkPhysicalDevice handle : handles) {
     VkPhysicalDeviceDriverProperties driver{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
@@ -88,8 +92,10 @@ std::vector<Candidate> list_devices(VkInstance instance, const std::string& inje
 const Candidate& choose_device(const std::vector<Candidate>& candidates, const std::string& wanted) {
   constexpr const char* page = "see docs/chapters/01_first_light.md";
   if (candidates.empty())
-    throw Error(Exit::skipped, fmt::format("no Vulkan device on this machine: wanted one with Vulkan 1.3, offered none; a "
-                                           "software driver is enough (on Debian: apt-get install mesa-vulkan-drivers); {}", page));
+    throw Error(Exit::skipped,
+                fmt::format("no Vulkan device on this machine: wanted one with Vulkan 1.3, offered none; a "
+                            "software driver is enough (on Debian: apt-get install mesa-vulkan-drivers); {}",
+                            page));
   if (!wanted.empty()) {
     size_t number = candidates.size();
     const auto [end, error] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), number);
@@ -105,8 +111,10 @@ const Candidate& choose_device(const std::vector<Candidate>& candidates, const s
   for (const Candidate& candidate : candidates)
     if (candidate.lacks.empty() && (best == nullptr || rank(candidate) < rank(*best))) best = &candidate;
   if (best == nullptr)
-    fail("no usable Vulkan device: wanted Vulkan 1.3 with dynamicRendering, synchronization2, timelineSemaphore; offered: {}; {}",
-         offered(candidates), page);
+    fail(
+        "no usable Vulkan device: wanted Vulkan 1.3 with dynamicRendering, synchronization2, timelineSemaphore; "
+        "offered: {}; {}",
+        offered(candidates), page);
   return *best;
 }
 // [/choose]
@@ -125,9 +133,8 @@ Device::Device(const Instance& instance, const Candidate& candidate, bool swapch
   VkPhysicalDeviceVulkan13Features v13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
                                        .synchronization2 = VK_TRUE,
                                        .dynamicRendering = VK_TRUE};
-  VkPhysicalDeviceVulkan12Features v12{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES,
-                                       .pNext = &v13,
-                                       .timelineSemaphore = VK_TRUE};
+  VkPhysicalDeviceVulkan12Features v12{
+      .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES, .pNext = &v13, .timelineSemaphore = VK_TRUE};
   const char* extension = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
   const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                 .pNext = &v12,

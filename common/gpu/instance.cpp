@@ -36,22 +36,23 @@ bool layer_available(const char* name) {
 // [create]
 Instance::Instance(Validation validation, const std::vector<const char*>& window_extensions)
     : messages_(std::make_unique<std::vector<std::string>>()) {
-  const VkApplicationInfo application{.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
-                                      .pApplicationName = "welkin",
-                                      .apiVersion = VK_API_VERSION_1_3};
+  const VkApplicationInfo application{
+      .sType = VK_STRUCTURE_TYPE_APPLICATION_INFO, .pApplicationName = "welkin", .apiVersion = VK_API_VERSION_1_3};
   std::vector<const char*> extensions = window_extensions;
   std::vector<const char*> layers;
   if (validation != Validation::off) {
     if (!layer_available(kValidationLayer))
-      fail("--validation: the Khronos validation layer is not installed; on Debian: apt-get install "
-           "vulkan-validationlayers");
+      fail(
+          "--validation: the Khronos validation layer is not installed; on Debian: apt-get install "
+          "vulkan-validationlayers");
     layers.push_back(kValidationLayer);
     extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
   }
 
   const VkDebugUtilsMessengerCreateInfoEXT messenger{
       .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
-      .messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
+      .messageSeverity =
+          VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
       .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT,
       .pfnUserCallback = on_message,
       .pUserData = messages_.get()};
@@ -70,8 +71,9 @@ Instance::Instance(Validation validation, const std::vector<const char*>& window
                                   .ppEnabledExtensionNames = extensions.data()};
   const VkResult result = vkCreateInstance(&info, nullptr, &instance_);
   if (result == VK_ERROR_INCOMPATIBLE_DRIVER)
-    throw Error(Exit::skipped, "no Vulkan driver on this machine: wanted Vulkan 1.3; a software driver is enough "
-                               "(on Debian: apt-get install mesa-vulkan-drivers); see docs/chapters/01_first_light.md");
+    throw Error(Exit::skipped,
+                "no Vulkan driver on this machine: wanted Vulkan 1.3; a software driver is enough "
+                "(on Debian: apt-get install mesa-vulkan-drivers); see docs/chapters/01_first_light.md");
   check(result, "vkCreateInstance");
 
   if (!layers.empty()) {

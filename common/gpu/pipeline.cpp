@@ -8,7 +8,8 @@ namespace welkin::gpu {
 SetLayout create_set_layout(const Device& device, const std::vector<Binding>& bindings) {
   std::vector<VkDescriptorSetLayoutBinding> entries;
   for (const Binding& binding : bindings)
-    entries.push_back({.binding = binding.slot, .descriptorType = binding.type, .descriptorCount = 1, .stageFlags = binding.stages});
+    entries.push_back(
+        {.binding = binding.slot, .descriptorType = binding.type, .descriptorCount = 1, .stageFlags = binding.stages});
   const VkDescriptorSetLayoutCreateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
                                              .bindingCount = static_cast<uint32_t>(entries.size()),
                                              .pBindings = entries.data()};
@@ -45,7 +46,8 @@ ComputePipeline create_compute_pipeline(const Device& device, const std::string&
                                         uint32_t push_constant_bytes, const Specialization& specialization) {
   ComputePipeline pipeline;
   pipeline.set_layout = create_set_layout(device, bindings);
-  pipeline.layout = create_pipeline_layout(device, pipeline.set_layout, VK_SHADER_STAGE_COMPUTE_BIT, push_constant_bytes);
+  pipeline.layout =
+      create_pipeline_layout(device, pipeline.set_layout, VK_SHADER_STAGE_COMPUTE_BIT, push_constant_bytes);
   pipeline.bindings = std::move(bindings);
 
   std::vector<VkSpecializationMapEntry> entries;
@@ -70,7 +72,8 @@ ComputePipeline create_compute_pipeline(const Device& device, const std::string&
 }
 // [/compute]
 
-DescriptorSet create_descriptor_set(const Device& device, VkDescriptorSetLayout layout, const std::vector<Binding>& bindings) {
+DescriptorSet create_descriptor_set(const Device& device, VkDescriptorSetLayout layout,
+                                    const std::vector<Binding>& bindings) {
   std::vector<VkDescriptorPoolSize> sizes;
   for (const Binding& binding : bindings) sizes.push_back({binding.type, 1});
   const VkDescriptorPoolCreateInfo pool_info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
@@ -89,7 +92,8 @@ DescriptorSet create_descriptor_set(const Device& device, VkDescriptorSetLayout 
   return set;
 }
 
-static void write_image(const Device& device, const DescriptorSet& set, uint32_t slot, VkDescriptorType type, const Image& image, VkSampler sampler) {
+static void write_image(const Device& device, const DescriptorSet& set, uint32_t slot, VkDescriptorType type,
+                        const Image& image, VkSampler sampler) {
   const VkDescriptorImageInfo info{.sampler = sampler, .imageView = image.view, .imageLayout = VK_IMAGE_LAYOUT_GENERAL};
   const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                                    .dstSet = set.handle,
@@ -104,11 +108,13 @@ void write_storage_image(const Device& device, const DescriptorSet& set, uint32_
   write_image(device, set, slot, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, image, VK_NULL_HANDLE);
 }
 
-void write_sampled_image(const Device& device, const DescriptorSet& set, uint32_t slot, const Image& image, VkSampler sampler) {
+void write_sampled_image(const Device& device, const DescriptorSet& set, uint32_t slot, const Image& image,
+                         VkSampler sampler) {
   write_image(device, set, slot, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, image, sampler);
 }
 
-void write_buffer(const Device& device, const DescriptorSet& set, uint32_t slot, VkDescriptorType type, const Buffer& buffer) {
+void write_buffer(const Device& device, const DescriptorSet& set, uint32_t slot, VkDescriptorType type,
+                  const Buffer& buffer) {
   const VkDescriptorBufferInfo info{.buffer = buffer.handle, .offset = 0, .range = VK_WHOLE_SIZE};
   const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                                    .dstSet = set.handle,

@@ -39,11 +39,14 @@ struct DescriptorSet {
   DescriptorPool pool;
   VkDescriptorSet handle = VK_NULL_HANDLE;
 };
-DescriptorSet create_descriptor_set(const Device& device, VkDescriptorSetLayout layout, const std::vector<Binding>& bindings);
+DescriptorSet create_descriptor_set(const Device& device, VkDescriptorSetLayout layout,
+                                    const std::vector<Binding>& bindings);
 void write_storage_image(const Device& device, const DescriptorSet& set, uint32_t slot, const Image& image);
 // For VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER; the image is read in layout GENERAL.
-void write_sampled_image(const Device& device, const DescriptorSet& set, uint32_t slot, const Image& image, VkSampler sampler);
-void write_buffer(const Device& device, const DescriptorSet& set, uint32_t slot, VkDescriptorType type, const Buffer& buffer);
+void write_sampled_image(const Device& device, const DescriptorSet& set, uint32_t slot, const Image& image,
+                         VkSampler sampler);
+void write_buffer(const Device& device, const DescriptorSet& set, uint32_t slot, VkDescriptorType type,
+                  const Buffer& buffer);
 
 // Binds pipeline, set and push constants, then starts that many workgroups.
 template <typename Push>
@@ -58,8 +61,8 @@ void dispatch(VkCommandBuffer commands, const ComputePipeline& pipeline, const D
 
 // The same with enough workgroups of local size 8x8 to cover `size`.
 template <typename Push>
-void dispatch_over(VkCommandBuffer commands, const ComputePipeline& pipeline, const DescriptorSet& set, const Push& push,
-                   VkExtent2D size) {
+void dispatch_over(VkCommandBuffer commands, const ComputePipeline& pipeline, const DescriptorSet& set,
+                   const Push& push, VkExtent2D size) {
   dispatch(commands, pipeline, set, push, (size.width + 7) / 8, (size.height + 7) / 8);
 }
 

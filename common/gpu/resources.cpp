@@ -21,7 +21,8 @@ Memory allocate(const Device& device, const VkMemoryRequirements& needs, VkMemor
 
 }  // namespace
 
-AccountEntry::AccountEntry(const Device& device, const std::string& name, uint64_t bytes) : device_(&device), name_(name) {
+AccountEntry::AccountEntry(const Device& device, const std::string& name, uint64_t bytes)
+    : device_(&device), name_(name) {
   device.allocations().push_back({name, bytes});
   ++device.allocation_count();
 }
@@ -34,10 +35,12 @@ AccountEntry::~AccountEntry() {
 }
 
 // [image]
-Image create_image(const Device& device, const std::string& name, VkExtent2D size, VkFormat format, VkImageUsageFlags usage, uint32_t depth) {
+Image create_image(const Device& device, const std::string& name, VkExtent2D size, VkFormat format,
+                   VkImageUsageFlags usage, uint32_t depth) {
   const uint32_t limit = depth > 0 ? device.limits().maxImageDimension3D : device.limits().maxImageDimension2D;
   if (size.width == 0 || size.height == 0 || size.width > limit || size.height > limit || depth > limit)
-    fail("{}: {}x{}x{} texels; each side must be 1 to {} on {}", name, size.width, size.height, std::max(depth, 1u), limit, device.candidate().name);
+    fail("{}: {}x{}x{} texels; each side must be 1 to {} on {}", name, size.width, size.height, std::max(depth, 1u),
+         limit, device.candidate().name);
   Image image{.size = size, .depth = std::max(depth, 1u), .format = format};
 
   const VkImageCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
@@ -74,11 +77,14 @@ Image create_image(const Device& device, const std::string& name, VkExtent2D siz
 // [/image]
 
 VkImageAspectFlags aspect_of(VkFormat format) {
-  return format == VK_FORMAT_D32_SFLOAT || format == VK_FORMAT_D16_UNORM ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
+  return format == VK_FORMAT_D32_SFLOAT || format == VK_FORMAT_D16_UNORM ? VK_IMAGE_ASPECT_DEPTH_BIT
+                                                                         : VK_IMAGE_ASPECT_COLOR_BIT;
 }
 
 Sampler create_sampler(const Device& device, Border u, Border v) {
-  const auto mode = [](Border border) { return border == Border::clamp ? VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE : VK_SAMPLER_ADDRESS_MODE_REPEAT; };
+  const auto mode = [](Border border) {
+    return border == Border::clamp ? VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE : VK_SAMPLER_ADDRESS_MODE_REPEAT;
+  };
   const VkSamplerCreateInfo info{.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
                                  .magFilter = VK_FILTER_LINEAR,
                                  .minFilter = VK_FILTER_LINEAR,
@@ -90,7 +96,8 @@ Sampler create_sampler(const Device& device, Border u, Border v) {
   return {device, sampler};
 }
 
-Buffer create_buffer(const Device& device, const std::string& name, VkDeviceSize bytes, VkBufferUsageFlags usage, Where where) {
+Buffer create_buffer(const Device& device, const std::string& name, VkDeviceSize bytes, VkBufferUsageFlags usage,
+                     Where where) {
   Buffer buffer{.bytes = bytes};
   const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
                                 .size = std::max<VkDeviceSize>(bytes, 4),
@@ -110,11 +117,13 @@ Buffer create_buffer(const Device& device, const std::string& name, VkDeviceSize
     vkGetPhysicalDeviceMemoryProperties(device.physical(), &memory);
     const VkMemoryPropertyFlags cached = properties | VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
     for (uint32_t i = 0; i < memory.memoryTypeCount; ++i)
-      if ((needs.memoryTypeBits & (1u << i)) != 0 && (memory.memoryTypes[i].propertyFlags & cached) == cached) properties = cached;
+      if ((needs.memoryTypeBits & (1u << i)) != 0 && (memory.memoryTypes[i].propertyFlags & cached) == cached)
+        properties = cached;
   }
   buffer.memory = allocate(device, needs, properties, name);
   check(vkBindBufferMemory(device, handle, buffer.memory, 0), "vkBindBufferMemory");
-  if (where != Where::device) check(vkMapMemory(device, buffer.memory, 0, VK_WHOLE_SIZE, 0, &buffer.mapped), "vkMapMemory");
+  if (where != Where::device)
+    check(vkMapMemory(device, buffer.memory, 0, VK_WHOLE_SIZE, 0, &buffer.mapped), "vkMapMemory");
   buffer.account = AccountEntry(device, name, needs.size);
   device.set_name(VK_OBJECT_TYPE_BUFFER, reinterpret_cast<uint64_t>(handle), name);
   return buffer;

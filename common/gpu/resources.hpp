@@ -27,7 +27,7 @@ class AccountEntry {
 };
 
 struct Image {
-  Memory memory;       // freed last
+  Memory memory;  // freed last
   ImageHandle handle;
   ImageView view;
   VkExtent2D size{};
@@ -36,9 +36,10 @@ struct Image {
   AccountEntry account;
 };
 
-// An image in device memory, layout UNDEFINED: 2-D, or 3-D of `depth` slices if that is above 0. Throws if a side is 0 or
-// beyond the device's limit. Depth formats get a depth view, all others a colour view.
-Image create_image(const Device& device, const std::string& name, VkExtent2D size, VkFormat format, VkImageUsageFlags usage, uint32_t depth = 0);
+// An image in device memory, layout UNDEFINED: 2-D, or 3-D of `depth` slices if that is above 0. Throws if a side is 0
+// or beyond the device's limit. Depth formats get a depth view, all others a colour view.
+Image create_image(const Device& device, const std::string& name, VkExtent2D size, VkFormat format,
+                   VkImageUsageFlags usage, uint32_t depth = 0);
 
 // What of an image a view or a barrier is about.
 VkImageAspectFlags aspect_of(VkFormat format);
@@ -55,11 +56,14 @@ struct Buffer {
   AccountEntry account;
 
   template <typename T>
-  std::span<T> as() const { return {static_cast<T*>(mapped), static_cast<size_t>(bytes / sizeof(T))}; }
+  std::span<T> as() const {
+    return {static_cast<T*>(mapped), static_cast<size_t>(bytes / sizeof(T))};
+  }
 };
 
 enum class Where { device, upload, readback };  // device memory; host-written; host-read (cached where there is such)
 
-Buffer create_buffer(const Device& device, const std::string& name, VkDeviceSize bytes, VkBufferUsageFlags usage, Where where);
+Buffer create_buffer(const Device& device, const std::string& name, VkDeviceSize bytes, VkBufferUsageFlags usage,
+                     Where where);
 
 }  // namespace welkin::gpu

@@ -16,7 +16,8 @@ fs::path shader_directory() {
   if (const char* chosen = std::getenv("WELKIN_SHADERS"); chosen != nullptr && *chosen != '\0') return chosen;
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (error) fail("cannot tell where this program lies ({}): set WELKIN_SHADERS to the compiled shaders", error.message());
+  if (error)
+    fail("cannot tell where this program lies ({}): set WELKIN_SHADERS to the compiled shaders", error.message());
   return program.parent_path().parent_path() / "shaders";
 }
 
@@ -32,7 +33,8 @@ std::vector<uint32_t> load_spirv(const std::string& name) {
   if (!file) fail("shader {}: cannot be read; build the chapter first (./welkin run builds it)", path.string());
   const std::vector<char> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   std::vector<uint32_t> words(bytes.size() / 4);
-  std::copy(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(words.size() * 4), reinterpret_cast<char*>(words.data()));
+  std::copy(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(words.size() * 4),
+            reinterpret_cast<char*>(words.data()));
   if (words.size() < 5 || words[0] != 0x07230203u || bytes.size() % 4 != 0)
     fail("shader {}: not SPIR-V; delete it and build again", path.string());
   return words;
@@ -52,8 +54,9 @@ std::string recompile_shaders(int up_to_chapter) {
     if (std::atoi(name.c_str()) > up_to_chapter) continue;  // a folder without a number is the framework's
     const fs::path target = shader_directory() / (name.string() + ".spv");
     const fs::path fresh = target.string() + ".new";
-    const std::string command = fmt::format("glslangValidator -V --target-env vulkan1.2 --quiet -I'{}' -o '{}' '{}' 2>&1",
-                                            sources.string(), fresh.string(), entry.path().string());
+    const std::string command =
+        fmt::format("glslangValidator -V --target-env vulkan1.2 --quiet -I'{}' -o '{}' '{}' 2>&1", sources.string(),
+                    fresh.string(), entry.path().string());
     FILE* pipe = popen(command.c_str(), "r");
     if (pipe == nullptr) return discard(), "cannot start glslangValidator";
     std::string message;

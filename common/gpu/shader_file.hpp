@@ -14,8 +14,8 @@ std::filesystem::path shader_directory();
 // Words of the SPIR-V of `name` ("05_single_scattering/image.comp"). Throws Error if missing or not SPIR-V.
 std::vector<uint32_t> load_spirv(const std::string& name);
 
-// Recompiles from the source tree the framework's shaders and those of chapters up to the given one. On success replaces
-// the SPIR-V files and returns an empty string; on failure changes nothing and returns the compiler's message.
+// Recompiles from the source tree the framework's shaders and those of chapters up to the given one. On success
+// replaces the SPIR-V files and returns an empty string; on failure changes nothing and returns the compiler's message.
 std::string recompile_shaders(int up_to_chapter);
 
 // Root of the source tree this program was built from (scenes, goldens and shader sources live there).

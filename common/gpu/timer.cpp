@@ -36,9 +36,7 @@ void Timer::begin_pass(VkCommandBuffer commands, const std::string& name) {
   names_[count_++] = name;
 }
 
-void Timer::end_pass(VkCommandBuffer commands) {
-  stamp(commands, 2 * static_cast<uint32_t>(count_) - 1);
-}
+void Timer::end_pass(VkCommandBuffer commands) { stamp(commands, 2 * static_cast<uint32_t>(count_) - 1); }
 // [/timestamps]
 
 const std::vector<PassTime>& Timer::read() {
@@ -52,7 +50,8 @@ const std::vector<PassTime>& Timer::read() {
   const uint64_t mask = device_->timestamp_bits() >= 64 ? ~uint64_t{0} : (uint64_t{1} << device_->timestamp_bits()) - 1;
   for (size_t i = 0; i < count_; ++i) {
     times_[i].name = names_[i];
-    times_[i].milliseconds = static_cast<double>((ticks[2 * i + 1] - ticks[2 * i]) & mask) * static_cast<double>(device_->limits().timestampPeriod) * 1e-6;
+    times_[i].milliseconds = static_cast<double>((ticks[2 * i + 1] - ticks[2 * i]) & mask) *
+                             static_cast<double>(device_->limits().timestampPeriod) * 1e-6;
   }
   return times_;
 }

@@ -6,7 +6,8 @@
 namespace welkin::graph {
 namespace {
 
-constexpr VkAccessFlags2 kWrites = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT |
+constexpr VkAccessFlags2 kWrites = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT |
+                                   VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT |
                                    VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_HOST_WRITE_BIT;
 constexpr size_t kNobody = ~size_t{0};
 
@@ -19,8 +20,12 @@ Resource Graph::hold(Held held) {
   return static_cast<Resource>(resources_.size() - 1);
 }
 
-Resource Graph::add(std::string name, const gpu::Image& image, gpu::Use outside) { return hold({.name = std::move(name), .image = &image, .outside = outside}); }
-Resource Graph::add(std::string name, const gpu::Buffer& buffer) { return hold({.name = std::move(name), .buffer = &buffer}); }
+Resource Graph::add(std::string name, const gpu::Image& image, gpu::Use outside) {
+  return hold({.name = std::move(name), .image = &image, .outside = outside});
+}
+Resource Graph::add(std::string name, const gpu::Buffer& buffer) {
+  return hold({.name = std::move(name), .buffer = &buffer});
+}
 
 void Graph::replace(Resource resource, const gpu::Image& image) {
   resources_[resource].image = &image;
@@ -52,11 +57,13 @@ void Graph::compile() {
       const std::string& name = resources_[access.resource].name;
       const auto same = [&](const Access& other) { return other.resource == access.resource; };
       if (std::count_if(counted.pass.accesses.begin(), counted.pass.accesses.end(), same) > 1)
-        fail("frame graph: pass '{}' names '{}' twice; what it changes must be another resource than what it reads", counted.pass.name, name);
+        fail("frame graph: pass '{}' names '{}' twice; what it changes must be another resource than what it reads",
+             counted.pass.name, name);
       const size_t writer = writer_of(access.resource);
       if (writer == kNobody) fail("frame graph: pass '{}' reads '{}', which no pass writes", counted.pass.name, name);
       if (writes(access.use) && &passes_[writer] != &counted)
-        fail("frame graph: '{}' is written by '{}' and by '{}'; one pass writes a resource", name, passes_[writer].pass.name, counted.pass.name);
+        fail("frame graph: '{}' is written by '{}' and by '{}'; one pass writes a resource", name,
+             passes_[writer].pass.name, counted.pass.name);
     }
   // From what is wanted back to what that needs: whoever is not reached is left out.
   order_.clear();
@@ -64,7 +71,8 @@ void Graph::compile() {
   std::vector<int> mark(passes_.size(), 0);
   for (Resource resource = 0; resource < resources_.size(); ++resource) {
     if (!resources_[resource].wanted) continue;
-    if (writer_of(resource) == kNobody) fail("frame graph: '{}' is wanted, and no pass writes it", resources_[resource].name);
+    if (writer_of(resource) == kNobody)
+      fail("frame graph: '{}' is wanted, and no pass writes it", resources_[resource].name);
     visit(writer_of(resource), mark);
   }
   image_barriers_.reserve(resources_.size());
@@ -94,7 +102,8 @@ std::vector<Barrier> Graph::barriers(int frame) const {
     for (const size_t index : order_)
       for (const Access& access : passes_[index].pass.accesses) {
         gpu::Use before;
-        if (depend(held[access.resource].state, use_of(access), before)) derived.push_back({passes_[index].pass.name, held[access.resource].name, before, access.use});
+        if (depend(held[access.resource].state, use_of(access), before))
+          derived.push_back({passes_[index].pass.name, held[access.resource].name, before, access.use});
       }
   }
   return derived;
@@ -105,15 +114,24 @@ bool Graph::depend(State& state, const gpu::Use& use, gpu::Use& before) {
   const bool new_layout = use.layout != state.layout;
   if (writes(use) || new_layout) {
     // After the last write, and after everybody who has read it since. A read leaves nothing to make visible.
-    before = {state.written.stage | state.read_stages, state.read_stages == 0 ? state.written.access : VK_ACCESS_2_NONE, state.layout};
+    before = {state.written.stage | state.read_stages, state.read_stages == 0 ? state.written.access : VK_ACCESS_2_NONE,
+              state.layout};
     // A layout is changed by the barrier itself, a write that later reads must see.
     const bool needed = before.stage != 0 || new_layout;
-    if (writes(use)) state = {.written = use, .layout = use.layout};
-    else state = {.written = {use.stage, VK_ACCESS_2_NONE, use.layout}, .read_stages = use.stage, .visible = {use}, .readers = 1, .layout = use.layout};
+    if (writes(use))
+      state = {.written = use, .layout = use.layout};
+    else
+      state = {.written = {use.stage, VK_ACCESS_2_NONE, use.layout},
+               .read_stages = use.stage,
+               .visible = {use},
+               .readers = 1,
+               .layout = use.layout};
     return needed;
   }
   state.read_stages |= use.stage;
-  const auto covers = [&](const gpu::Use& seen) { return (use.stage & ~seen.stage) == 0 && (use.access & ~seen.access) == 0; };
+  const auto covers = [&](const gpu::Use& seen) {
+    return (use.stage & ~seen.stage) == 0 && (use.access & ~seen.access) == 0;
+  };
   if (std::any_of(state.visible.begin(), state.visible.end(), covers)) return false;
   before = {state.written.stage, state.written.access, state.layout};
   state.visible[state.readers++ % state.visible.size()] = use;
@@ -132,18 +150,26 @@ void Graph::record_barriers(const app::Frame& frame, const Pass& pass) {
     if (drops_barriers_ && !writes(access.use)) continue;
     if (held.image != nullptr)
       image_barriers_.push_back({.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
-                                 .srcStageMask = before.stage, .srcAccessMask = before.access,
-                                 .dstStageMask = access.use.stage, .dstAccessMask = access.use.access,
-                                 .oldLayout = before.layout, .newLayout = access.use.layout,
-                                 .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED, .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                 .srcStageMask = before.stage,
+                                 .srcAccessMask = before.access,
+                                 .dstStageMask = access.use.stage,
+                                 .dstAccessMask = access.use.access,
+                                 .oldLayout = before.layout,
+                                 .newLayout = access.use.layout,
+                                 .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                 .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
                                  .image = held.image->handle,
                                  .subresourceRange = {gpu::aspect_of(held.image->format), 0, 1, 0, 1}});
     else
       buffer_barriers_.push_back({.sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER_2,
-                                  .srcStageMask = before.stage, .srcAccessMask = before.access,
-                                  .dstStageMask = access.use.stage, .dstAccessMask = access.use.access,
-                                  .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED, .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                                  .buffer = held.buffer->handle, .size = VK_WHOLE_SIZE});
+                                  .srcStageMask = before.stage,
+                                  .srcAccessMask = before.access,
+                                  .dstStageMask = access.use.stage,
+                                  .dstAccessMask = access.use.access,
+                                  .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                  .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                  .buffer = held.buffer->handle,
+                                  .size = VK_WHOLE_SIZE});
   }
   if (image_barriers_.empty() && buffer_barriers_.empty()) return;
   const VkDependencyInfo info{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
@@ -163,11 +189,10 @@ void Graph::touched_outside(Held& held) {
 
 bool Graph::must_run(const Counted& counted, const app::Frame& frame) const {
   if (all_again_ || (counted.pass.changed && counted.pass.changed(frame))) return true;
-  return std::any_of(counted.pass.accesses.begin(), counted.pass.accesses.end(),
-                     [&](const Access& access) {
-                       const Held& held = resources_[access.resource];
-                       return writes(access.use) ? held.outdated : held.written_now;
-                     });
+  return std::any_of(counted.pass.accesses.begin(), counted.pass.accesses.end(), [&](const Access& access) {
+    const Held& held = resources_[access.resource];
+    return writes(access.use) ? held.outdated : held.written_now;
+  });
 }
 
 // [execute]
@@ -203,7 +228,8 @@ std::string Graph::explain() const {
   for (const Counted& counted : passes_)
     if (!counted.needed) text += fmt::format("  {:<20} left out: nobody needs what it writes\n", counted.pass.name);
   for (const Barrier& barrier : barriers())
-    text += fmt::format("  before {}: {} from {} to {}\n", barrier.pass, barrier.resource, describe(barrier.before), describe(barrier.after));
+    text += fmt::format("  before {}: {} from {} to {}\n", barrier.pass, barrier.resource, describe(barrier.before),
+                        describe(barrier.after));
   return text;
 }
 
@@ -225,15 +251,23 @@ std::string describe(const gpu::Use& use) {
     for (const auto& [bit, name] : names)
       if ((value & bit) != 0) text += (text.empty() ? "" : ", ") + std::string(name);
   };
-  bits(use.stage, {{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, "compute shader"}, {VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT, "vertex shader"},
-                   {VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, "fragment shader"}, {VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT, "early depth test"},
-                   {VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT, "late depth test"}, {VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, "attachment output"},
-                   {VK_PIPELINE_STAGE_2_COPY_BIT, "copy"}, {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, "transfer"}});
+  bits(use.stage, {{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, "compute shader"},
+                   {VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT, "vertex shader"},
+                   {VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, "fragment shader"},
+                   {VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT, "early depth test"},
+                   {VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT, "late depth test"},
+                   {VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, "attachment output"},
+                   {VK_PIPELINE_STAGE_2_COPY_BIT, "copy"},
+                   {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, "transfer"}});
   if (text.empty()) text = "nothing";
-  bits(use.access, {{VK_ACCESS_2_SHADER_STORAGE_READ_BIT, "storage read"}, {VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, "storage write"},
-                    {VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, "sampled read"}, {VK_ACCESS_2_UNIFORM_READ_BIT, "uniform read"},
-                    {VK_ACCESS_2_TRANSFER_WRITE_BIT, "write"}, {VK_ACCESS_2_TRANSFER_READ_BIT, "read"},
-                    {VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, "colour write"}, {VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT, "depth write"},
+  bits(use.access, {{VK_ACCESS_2_SHADER_STORAGE_READ_BIT, "storage read"},
+                    {VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, "storage write"},
+                    {VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, "sampled read"},
+                    {VK_ACCESS_2_UNIFORM_READ_BIT, "uniform read"},
+                    {VK_ACCESS_2_TRANSFER_WRITE_BIT, "write"},
+                    {VK_ACCESS_2_TRANSFER_READ_BIT, "read"},
+                    {VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, "colour write"},
+                    {VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT, "depth write"},
                     {VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT, "depth read"}});
   switch (use.layout) {
     case VK_IMAGE_LAYOUT_UNDEFINED: break;  // a buffer, or content that is not needed

@@ -1,9 +1,9 @@
 // The frame graph: passes say what they read and write; it orders them, leaves out those whose results nobody needs,
 // skips those whose inputs have not changed, derives the barriers between the rest, and times each.
 //
-// A resource is written by one pass only, and no pass reads what it writes: an image that is to be changed is two images.
-// Layouts and accesses are kept from frame to frame (one queue, submissions in order), so that a table computed once is
-// made visible once, and a frame that reads it again waits for nothing.
+// A resource is written by one pass only, and no pass reads what it writes: an image that is to be changed is two
+// images. Layouts and accesses are kept from frame to frame (one queue, submissions in order), so that a table computed
+// once is made visible once, and a frame that reads it again waits for nothing.
 #pragma once
 
 #include <array>
@@ -49,18 +49,20 @@ class Graph {
   // with layout UNDEFINED that its old content is not needed: the picture that is displayed and read back.
   Resource add(std::string name, const gpu::Image& image, gpu::Use outside = {});
   Resource add(std::string name, const gpu::Buffer& buffer);
-  // The image at this address was made anew, or another image takes its place: its pass runs in the next frame. No frame
-  // is in flight.
+  // The image at this address was made anew, or another image takes its place: its pass runs in the next frame. No
+  // frame is in flight.
   void replace(Resource resource, const gpu::Image& image);
 
   void add(Pass pass);
   void want(Resource resource);  // what the frame is for
 
-  // Orders and culls; throws Error on a cycle, a second writer, a pass that reads what it writes, and on a wanted or read
-  // resource that no pass writes.
+  // Orders and culls; throws Error on a cycle, a second writer, a pass that reads what it writes, and on a wanted or
+  // read resource that no pass writes.
   void compile();
   void redo() { all_again_ = true; }  // every pass runs in the next frame
-  void redo(Resource resource) { resources_[resource].outdated = true; }  // the pass that writes it does: it has another pipeline
+  void redo(Resource resource) {
+    resources_[resource].outdated = true;
+  }  // the pass that writes it does: it has another pipeline
 
   // Records the passes that have to run, with barriers and timestamps. Allocates nothing.
   void execute(const app::Frame& frame);
@@ -73,10 +75,10 @@ class Graph {
   uint64_t runs(const std::string& pass) const;
 
  private:
-  struct State {  // what happened to a resource last
-    gpu::Use written;                          // the last write
-    VkPipelineStageFlags2 read_stages = 0;     // who has read it since
-    std::array<gpu::Use, 4> visible{};         // and for whom that write has been made visible; more readers wait again
+  struct State {                            // what happened to a resource last
+    gpu::Use written;                       // the last write
+    VkPipelineStageFlags2 read_stages = 0;  // who has read it since
+    std::array<gpu::Use, 4> visible{};      // and for whom that write has been made visible; more readers wait again
     uint32_t readers = 0;
     VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
   };

@@ -71,8 +71,14 @@ std::string bench_table(const BenchResult& r) {
 void write_knobs_json(const std::filesystem::path& file, const std::string& chapter, const std::vector<Knob>& knobs) {
   Json json = {{"chapter", chapter}, {"knobs", Json::array()}};
   for (const Knob& knob : knobs)
-    json["knobs"].push_back({{"name", knob.name}, {"unit", knob.unit}, {"meaning", knob.meaning}, {"minimum", knob.minimum},
-                             {"maximum", knob.maximum}, {"initial", knob.initial}, {"choices", knob.choices}, {"ladder", knob.ladder}});
+    json["knobs"].push_back({{"name", knob.name},
+                             {"unit", knob.unit},
+                             {"meaning", knob.meaning},
+                             {"minimum", knob.minimum},
+                             {"maximum", knob.maximum},
+                             {"initial", knob.initial},
+                             {"choices", knob.choices},
+                             {"ladder", knob.ladder}});
   write_file_atomically(file, json.dump(2) + "\n");
 }
 

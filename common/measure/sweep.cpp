@@ -66,7 +66,8 @@ void write_sweep_csv(const std::filesystem::path& file, const std::vector<Knob>&
     line.insert(line.end(), values.begin(), values.end());
     for (const double ms : {gpu.median, gpu.minimum, gpu.maximum, wall.median}) add(ms);
     for (const std::string& pass : passes) {
-      const auto found = std::find_if(measured.begin(), measured.end(), [&](const auto& one) { return one.first == pass; });
+      const auto found =
+          std::find_if(measured.begin(), measured.end(), [&](const auto& one) { return one.first == pass; });
       add(found == measured.end() ? 0.0 : found->second);
     }
     line.push_back(fmt::format("{}", bytes));

@@ -162,8 +162,10 @@ std::string write_scene(const Scene& scene) {
     out += "\n[terrain]\n";
     line("extent_km", number(terrain.extent_km));
     line("height_km", number(terrain.height_km));
-    if (!terrain.height_map.empty()) line("height_map", quoted(terrain.height_map));
-    else line("size", fmt::format("{}", terrain.size)), line("seed", fmt::format("{}", terrain.seed));
+    if (!terrain.height_map.empty())
+      line("height_map", quoted(terrain.height_map));
+    else
+      line("size", fmt::format("{}", terrain.size)), line("seed", fmt::format("{}", terrain.seed));
     line("shadows", terrain.shadows ? "true" : "false");
     if (terrain.signs_azimuth_deg) line("signs_azimuth_deg", number(*terrain.signs_azimuth_deg));
   }

@@ -167,7 +167,8 @@ Terrain read_terrain(const Section& section) {
   if (has(section, "height_map")) {
     const toml::node& map = *section.table->get("height_map");
     if (map.is_string()) terrain.height_map = map.as_string()->get();
-    if (terrain.height_map.empty() || terrain.height_map.size() > 1000 || one_line(terrain.height_map) != terrain.height_map)
+    if (terrain.height_map.empty() || terrain.height_map.size() > 1000 ||
+        one_line(terrain.height_map) != terrain.height_map)
       fail_value(section, "height_map", map, "the name of a 16-bit grayscale PNG file, quoted");
     check_exclusive(section, "height_map", "size");
     check_exclusive(section, "height_map", "seed");
@@ -177,7 +178,8 @@ Terrain read_terrain(const Section& section) {
   read(section, "size", terrain.size, {64, 4096, "samples"});
   read(section, "seed", terrain.seed, {0, 1e6});
   read(section, "shadows", terrain.shadows);
-  if (has(section, "signs_azimuth_deg")) read_azimuth(section, "signs_azimuth_deg", terrain.signs_azimuth_deg.emplace());
+  if (has(section, "signs_azimuth_deg"))
+    read_azimuth(section, "signs_azimuth_deg", terrain.signs_azimuth_deg.emplace());
   return terrain;
 }
 

@@ -11,7 +11,8 @@ struct SunAngles {
 };
 
 // utc: "YYYY-MM-DDThh:mm[:ss][Z]", "now", "today" (now) or "today hh:mm[:ss]" (UTC). Latitude north positive, longitude
-// east positive, degrees. Valid 1900-2100; throws Error for text or values outside. Source: IAU 2006/2000A through ERFA.
+// east positive, degrees. Valid 1900-2100; throws Error for text or values outside. Source: IAU 2006/2000A through
+// ERFA.
 SunAngles sun_angles(const std::string& utc, double latitude_deg, double longitude_deg);
 
 }  // namespace welkin

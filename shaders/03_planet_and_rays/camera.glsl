@@ -11,7 +11,7 @@
 vec3 camera_direction(CameraRays camera, ivec2 pixel) {
   float x = float(2 * pixel.x + 1 - camera.size.x) / float(camera.size.x);
   float y = float(2 * pixel.y + 1 - camera.size.y) / float(camera.size.y);
-  vec3 direction = camera.forward.xyz + (camera.right.xyz * x - camera.up.xyz * y);
+  vec3 direction = camera.forward + (camera.right * x - camera.up * y);
   return direction / length(direction);
 }
 // [/camera]

@@ -104,16 +104,16 @@ vec3 legend(float x) {
 
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  const ivec2 size = push.camera.size.xy;
+  const ivec2 size = push.camera.size;
   if (any(greaterThanEqual(pixel, size))) return;
   // [main]
   const float radius_km = push.planet.x;
-  const float altitude_km = push.camera.right.w;
+  const float altitude_km = push.camera.altitude_km;
   const vec3 direction = camera_direction(push.camera, pixel);
   const float distance_km = ground_distance(RAYS_FORM, radius_km, altitude_km, direction);
   vec3 colour;
   if (DEBUG_VIEW == VIEW_SHADED)
-    colour = shaded(radius_km, push.planet.y, altitude_km, direction, push.camera.sun.xyz, distance_km);
+    colour = shaded(radius_km, push.planet.y, altitude_km, direction, push.camera.sun, distance_km);
   else
     colour = debug_colour(radius_km, altitude_km, direction, distance_km);
   // [/main]

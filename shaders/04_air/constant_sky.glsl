@@ -39,7 +39,7 @@ float molecule_phase(float one_minus_nu) {
 
 float aerosol_phase(Atmosphere atmosphere, float one_minus_nu, float one_plus_nu) {
   if (PHASE_DETAIL <= 1) return isotropic_phase();
-  if (PHASE_DETAIL == 2) return henyey_greenstein_lobe(one_minus_nu, one_plus_nu, atmosphere.mie_extinction.w);
+  if (PHASE_DETAIL == 2) return henyey_greenstein_lobe(one_minus_nu, one_plus_nu, atmosphere.mie_g);
   return mie_phase(atmosphere, one_minus_nu, one_plus_nu);
 }
 
@@ -52,14 +52,14 @@ struct ConstantSky {
 // altitude_km >= 0; view and sun: unit vectors in the local frame, z up.
 // [constant_sky]
 ConstantSky constant_sky(Atmosphere atmosphere, float altitude_km, vec3 view, vec3 sun) {
-  float radius = atmosphere.shape.x;
-  float thickness = HAS_RAYLEIGH ? atmosphere.rayleigh.w : HAS_MIE ? atmosphere.mie_scattering.w : atmosphere.shape.z;
-  float shell = min(thickness, atmosphere.shape.y);
+  float radius = atmosphere.ground_radius_km;
+  float thickness = HAS_RAYLEIGH ? atmosphere.rayleigh_scale_height_km : HAS_MIE ? atmosphere.mie_scale_height_km : atmosphere.ozone_half_width_km;
+  float shell = min(thickness, atmosphere.top_km);
   // Densities whose column over the shell is each constituent's own: exponential H, tent half width.
   vec3 density = vec3(0.0);
-  if (HAS_RAYLEIGH) density.x = atmosphere.rayleigh.w / shell;
-  if (HAS_MIE) density.y = atmosphere.mie_scattering.w / shell;
-  if (HAS_OZONE) density.z = atmosphere.shape.z / shell;
+  if (HAS_RAYLEIGH) density.x = atmosphere.rayleigh_scale_height_km / shell;
+  if (HAS_MIE) density.y = atmosphere.mie_scale_height_km / shell;
+  if (HAS_OZONE) density.z = atmosphere.ozone_half_width_km / shell;
   vec3 sigma = extinction(atmosphere, density);
 
   ConstantSky sky = ConstantSky(vec3(0.0), vec3(1.0), 0.0);
@@ -88,15 +88,15 @@ ConstantSky constant_sky(Atmosphere atmosphere, float altitude_km, vec3 view, ve
   vec3 tau = min(sigma * way, 1.0e30);
 
   vec3 source = vec3(0.0);
-  if (HAS_RAYLEIGH) source += atmosphere.rayleigh.xyz * (density.x * molecule_phase(one_minus_nu));
-  if (HAS_MIE) source += atmosphere.mie_scattering.xyz * (density.y * aerosol_phase(atmosphere, one_minus_nu, one_minus_cosine(view, -sun)));
+  if (HAS_RAYLEIGH) source += atmosphere.rayleigh_scattering * (density.x * molecule_phase(one_minus_nu));
+  if (HAS_MIE) source += atmosphere.mie_scattering * (density.y * aerosol_phase(atmosphere, one_minus_nu, one_minus_cosine(view, -sun)));
   sky.radiance = source * way * mean_transmittance(sun_near, tau + sun_far);
   sky.transmittance = exp(-tau);
   if (ground) {
     sky.hits_ground = 1.0;
-    sky.radiance += atmosphere.ground.xyz * (0.3183098861837907 * max(mu_sun_end, 0.0)) * exp(-(tau + sun_far));
+    sky.radiance += atmosphere.ground_albedo * (0.3183098861837907 * max(mu_sun_end, 0.0)) * exp(-(tau + sun_far));
   }
-  sky.radiance *= atmosphere.sun.xyz;
+  sky.radiance *= atmosphere.solar_irradiance;
   return sky;
 }
 // [/constant_sky]

@@ -14,15 +14,15 @@ layout(push_constant) uniform Push { CameraRays camera; };
 
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, camera.size.xy))) return;
+  if (any(greaterThanEqual(pixel, camera.size))) return;
   vec3 radiance = imageLoad(sky, pixel).xyz;
   if (SUN_DISC) {
     // Inside the disc of angular radius a: 1 - cos < 1 - cos a = 2 sin^2(a/2); its solid angle is 4 pi sin^2(a/2).
-    const float half_sine = sin(0.5 * atmosphere.shape.w);
+    const float half_sine = sin(0.5 * atmosphere.sun_angular_radius);
     const vec3 view = camera_direction(camera, pixel);
-    if (one_minus_cosine(view, camera.sun.xyz) < 2.0 * half_sine * half_sine) {
-      const ConstantSky path = constant_sky(atmosphere, camera.right.w, view, camera.sun.xyz);
-      radiance += (1.0 - path.hits_ground) * path.transmittance * atmosphere.sun.xyz * (0.0795774715 / (half_sine * half_sine));
+    if (one_minus_cosine(view, camera.sun) < 2.0 * half_sine * half_sine) {
+      const ConstantSky path = constant_sky(atmosphere, camera.altitude_km, view, camera.sun);
+      radiance += (1.0 - path.hits_ground) * path.transmittance * atmosphere.solar_irradiance * (0.0795774715 / (half_sine * half_sine));
     }
   }
   imageStore(target, pixel, vec4(radiance, 1.0));

@@ -12,29 +12,29 @@
 #include "04_air/phase.glsl"
 
 float ozone_density(Atmosphere atmosphere, float altitude_km) {
-  return max(1.0 - abs(altitude_km - atmosphere.ozone.w) * (1.0 / atmosphere.shape.z), 0.0);
+  return max(1.0 - abs(altitude_km - atmosphere.ozone_peak_km) * (1.0 / atmosphere.ozone_half_width_km), 0.0);
 }
 
 // The reciprocals are the same for every sample: a compiler takes them out of loops, divisions it may not.
 // (rayleigh, mie, ozone) relative to the ground's, to the ground's and to the peak's; 0 for what does not exist.
 vec3 densities(Atmosphere atmosphere, float altitude_km) {
   vec3 density = vec3(0.0, 0.0, 0.0);
-  if (HAS_RAYLEIGH) density.x = exp(altitude_km * (-1.0 / atmosphere.rayleigh.w));
-  if (HAS_MIE) density.y = exp(altitude_km * (-1.0 / atmosphere.mie_scattering.w));
+  if (HAS_RAYLEIGH) density.x = exp(altitude_km * (-1.0 / atmosphere.rayleigh_scale_height_km));
+  if (HAS_MIE) density.y = exp(altitude_km * (-1.0 / atmosphere.mie_scale_height_km));
   if (HAS_OZONE) density.z = ozone_density(atmosphere, altitude_km);
   return density;
 }
 
 // Extinction in 1/km from densities, or optical depth from columns in km. Constituents that do not exist have density 0.
 vec3 extinction(Atmosphere atmosphere, vec3 density) {
-  return vec3(atmosphere.rayleigh) * density.x + vec3(atmosphere.mie_extinction) * density.y + vec3(atmosphere.ozone) * density.z;
+  return atmosphere.rayleigh_scattering * density.x + atmosphere.mie_extinction * density.y + atmosphere.ozone_absorption * density.z;
 }
 
 float mie_phase(Atmosphere atmosphere, float one_minus_nu, float one_plus_nu) {
-  float g = atmosphere.mie_extinction.w;
+  float g = atmosphere.mie_g;
   if (MIE_PHASE == 1) return cornette_shanks_phase(g >= 0.0 ? one_minus_nu : one_plus_nu, abs(g));
-  if (MIE_PHASE == 2) return draine_phase(g >= 0.0 ? one_minus_nu : one_plus_nu, abs(g), atmosphere.sun.w);
-  if (MIE_PHASE == 3) return double_hg_phase(one_minus_nu, one_plus_nu, g, atmosphere.ground.w, atmosphere.sun.w);
+  if (MIE_PHASE == 2) return draine_phase(g >= 0.0 ? one_minus_nu : one_plus_nu, abs(g), atmosphere.mie_alpha);
+  if (MIE_PHASE == 3) return double_hg_phase(one_minus_nu, one_plus_nu, g, atmosphere.second_g, atmosphere.mie_alpha);
   return henyey_greenstein_lobe(one_minus_nu, one_plus_nu, g);
 }
 
@@ -48,8 +48,8 @@ ScatteringTowardsEye scattering_towards_eye(Atmosphere atmosphere, float one_min
   ScatteringTowardsEye scattering;
   scattering.rayleigh = vec3(0.0, 0.0, 0.0);
   scattering.mie = vec3(0.0, 0.0, 0.0);
-  if (HAS_RAYLEIGH) scattering.rayleigh = vec3(atmosphere.rayleigh) * rayleigh_phase(one_minus_nu);
-  if (HAS_MIE) scattering.mie = vec3(atmosphere.mie_scattering) * mie_phase(atmosphere, one_minus_nu, one_plus_nu);
+  if (HAS_RAYLEIGH) scattering.rayleigh = atmosphere.rayleigh_scattering * rayleigh_phase(one_minus_nu);
+  if (HAS_MIE) scattering.mie = atmosphere.mie_scattering * mie_phase(atmosphere, one_minus_nu, one_plus_nu);
   return scattering;
 }
 

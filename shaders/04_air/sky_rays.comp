@@ -24,6 +24,6 @@ void main() {
     results[2u * i + 1u] = vec4(sky.transmittance, 1.0);
   } else {
     if (i >= rays.length()) return;
-    results[i] = vec4(constant_sky(atmosphere, camera.right.w, rays[i].xyz, camera.sun.xyz).radiance, 1.0);
+    results[i] = vec4(constant_sky(atmosphere, camera.altitude_km, rays[i].xyz, camera.sun).radiance, 1.0);
   }
 }

@@ -14,5 +14,5 @@ layout(location = 0) out vec4 radiance;
 
 void main() {
   if (PER_VERTEX) radiance = vec4(colour, 1.0);
-  else radiance = vec4(constant_sky(atmosphere, camera.right.w, normalize(direction), camera.sun.xyz).radiance, 1.0);
+  else radiance = vec4(constant_sky(atmosphere, camera.altitude_km, normalize(direction), camera.sun).radiance, 1.0);
 }

@@ -15,8 +15,8 @@ layout(location = 1) out vec3 colour;
 void main() {
   direction = directions[gl_VertexIndex].xyz;
   colour = PER_VERTEX ? colours[gl_VertexIndex].xyz : vec3(0.0);
-  const float w = dot(direction, camera.forward.xyz);
-  const float x = dot(direction, camera.right.xyz) / dot(camera.right.xyz, camera.right.xyz);
-  const float y = dot(direction, camera.up.xyz) / dot(camera.up.xyz, camera.up.xyz);
+  const float w = dot(direction, camera.forward);
+  const float x = dot(direction, camera.right) / dot(camera.right, camera.right);
+  const float y = dot(direction, camera.up) / dot(camera.up, camera.up);
   gl_Position = vec4(x, -y, 0.5 * w, w);  // Vulkan's y points down
 }

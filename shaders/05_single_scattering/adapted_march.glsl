@@ -34,7 +34,7 @@ vec2 column_inside(vec4 rayleigh, vec4 mie, int i, vec2 floor_of) {
 Stretch march_panel(Atmosphere atmosphere, AirRay ray, Line line, ScaleCount count, ScatteringTowardsEye scattering,
                     Stretch before, float x_a, float x_b) {
   float dx = x_b - x_a;
-  float radius_km = atmosphere.shape.x;
+  float radius_km = atmosphere.ground_radius_km;
   vec4 altitude;
   vec4 mu_sun;
   vec4 rayleigh;  // columns per panel width at the nodes
@@ -109,15 +109,15 @@ struct Glimpse {
 
 Glimpse glimpse(Atmosphere atmosphere, AirRay ray, Line line, ScaleCount count, ScatteringTowardsEye scattering, vec3 column,
                 float x, float dx) {
-  float radius_km = atmosphere.shape.x;
+  float radius_km = atmosphere.ground_radius_km;
   CountedPoint point = point_at_count(count, ray, line, x);
   vec3 density = densities(atmosphere, point.altitude_km) * point.dt_dx;
   float mu_sun = mu_sun_along(ray, radius_km, point.t_km, point.altitude_km);
   Line light = line_through(radius_km, point.altitude_km, mu_sun, sqrt((1.0 - mu_sun) * (1.0 + mu_sun)));
   light.tangent_km = max(light.tangent_km, mu_sun < 0.0 ? 0.0 : light.tangent_km);
   vec3 sun = vec3(0.0, 0.0, 0.0);
-  if (HAS_RAYLEIGH) sun.x = exponential_column_estimate(light, point.altitude_km, mu_sun, atmosphere.rayleigh.w);
-  if (HAS_MIE) sun.y = exponential_column_estimate(light, point.altitude_km, mu_sun, atmosphere.mie_scattering.w);
+  if (HAS_RAYLEIGH) sun.x = exponential_column_estimate(light, point.altitude_km, mu_sun, atmosphere.rayleigh_scale_height_km);
+  if (HAS_MIE) sun.y = exponential_column_estimate(light, point.altitude_km, mu_sun, atmosphere.mie_scale_height_km);
   Glimpse result;
   vec3 tau = extinction(atmosphere, column + density * (0.5 * dx) + max(sun, vec3(0.0, 0.0, 0.0)));
   result.tau = tau;
@@ -173,7 +173,7 @@ Piece piece_between(float begin, float end, int first_cell, int cells) {
 // 4. Four Gauss nodes integrate each panel; what lies before a piece enters by its columns alone.
 // The whole ray's transmittance is a quadrature of its own, done only if wanted (1 otherwise).
 RayLight adapted_march(Atmosphere atmosphere, AirRay ray, ScatteringTowardsEye scattering, int view_steps, bool want_transmittance) {
-  float radius_km = atmosphere.shape.x;
+  float radius_km = atmosphere.ground_radius_km;
   Line line = line_through(radius_km, ray.altitude_km, ray.mu, ray.sine);
   ScaleCount count = scale_count(atmosphere, line);
   float x_begin = count_along(count, line, ray, 0.0);

@@ -86,10 +86,10 @@ float exponential_column_to_top(Line line, float altitude_km, float r_mu, float 
 // Integral of the ozone tent over the line's points between two altitudes, both on one side of the tangent point. Below
 // and above the peak the tent is linear in altitude, altitude is nearly quadratic in s, and Simpson integrates cubics.
 float ozone_column_between(Atmosphere atmosphere, Line line, float low_km, float high_km) {
-  if (high_km <= atmosphere.ozone.w - atmosphere.shape.z || low_km >= atmosphere.ozone.w + atmosphere.shape.z) return 0.0;
-  float h_0 = clamp(atmosphere.ozone.w - atmosphere.shape.z, low_km, high_km);
-  float h_1 = clamp(atmosphere.ozone.w, low_km, high_km);
-  float h_2 = clamp(atmosphere.ozone.w + atmosphere.shape.z, low_km, high_km);
+  if (high_km <= atmosphere.ozone_peak_km - atmosphere.ozone_half_width_km || low_km >= atmosphere.ozone_peak_km + atmosphere.ozone_half_width_km) return 0.0;
+  float h_0 = clamp(atmosphere.ozone_peak_km - atmosphere.ozone_half_width_km, low_km, high_km);
+  float h_1 = clamp(atmosphere.ozone_peak_km, low_km, high_km);
+  float h_2 = clamp(atmosphere.ozone_peak_km + atmosphere.ozone_half_width_km, low_km, high_km);
   float s_0 = chord_to(line, h_0);
   float s_1 = chord_to(line, h_1);
   float s_2 = chord_to(line, h_2);
@@ -135,8 +135,8 @@ float ozone_from_tangent(Atmosphere atmosphere, Line line, float altitude_km, fl
 // Columns (rayleigh, mie, ozone) in km from a lit point at altitude h to the top, towards the zenith cosine mu_sun.
 // The planet is never in the way: a tangent point below the ground is rounding and counts as touching it.
 vec3 sun_columns(Atmosphere atmosphere, float altitude_km, float mu_sun) {
-  float radius_km = atmosphere.shape.x;
-  float top_km = atmosphere.shape.y;
+  float radius_km = atmosphere.ground_radius_km;
+  float top_km = atmosphere.top_km;
   float r_mu = (radius_km + altitude_km) * mu_sun;
   Line line = line_through(radius_km, altitude_km, mu_sun, sqrt(max((1.0 - mu_sun) * (1.0 + mu_sun), 0.0)));
   if (mu_sun < 0.0 && line.tangent_km < 0.0) {
@@ -145,8 +145,8 @@ vec3 sun_columns(Atmosphere atmosphere, float altitude_km, float mu_sun) {
     r_mu = -chord_to(line, altitude_km);
   }
   vec3 column = vec3(0.0, 0.0, 0.0);
-  if (HAS_RAYLEIGH) column.x = exponential_column_to_top(line, altitude_km, r_mu, top_km, atmosphere.rayleigh.w);
-  if (HAS_MIE) column.y = exponential_column_to_top(line, altitude_km, r_mu, top_km, atmosphere.mie_scattering.w);
+  if (HAS_RAYLEIGH) column.x = exponential_column_to_top(line, altitude_km, r_mu, top_km, atmosphere.rayleigh_scale_height_km);
+  if (HAS_MIE) column.y = exponential_column_to_top(line, altitude_km, r_mu, top_km, atmosphere.mie_scale_height_km);
   if (HAS_OZONE) {
     column.z = ozone_column_between(atmosphere, line, altitude_km, max(top_km, altitude_km));
     if (r_mu < 0.0) column.z += 2.0 * ozone_column_from_tangent(atmosphere, line, altitude_km);
@@ -167,8 +167,8 @@ vec3 optical_depth_and_to_sun(Atmosphere atmosphere, vec3 column, float altitude
 // Columns (rayleigh, mie, ozone) in km between two points of a line at s_a <= s_b, where the altitudes are h_a and h_b.
 vec3 columns_between(Atmosphere atmosphere, Line line, float s_a, float h_a, float s_b, float h_b, int panels) {
   vec3 column = vec3(0.0, 0.0, 0.0);
-  if (HAS_RAYLEIGH) column.x = exponential_column_between(line, s_a, s_b, atmosphere.rayleigh.w, panels);
-  if (HAS_MIE) column.y = exponential_column_between(line, s_a, s_b, atmosphere.mie_scattering.w, panels);
+  if (HAS_RAYLEIGH) column.x = exponential_column_between(line, s_a, s_b, atmosphere.rayleigh_scale_height_km, panels);
+  if (HAS_MIE) column.y = exponential_column_between(line, s_a, s_b, atmosphere.mie_scale_height_km, panels);
   if (HAS_OZONE) {
     float from_a = ozone_column_from_tangent(atmosphere, line, h_a);
     float from_b = ozone_column_from_tangent(atmosphere, line, h_b);

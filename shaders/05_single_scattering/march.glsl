@@ -77,8 +77,8 @@ struct AirRay {
 // Clips the ray to the atmosphere. From space the first point is the entry; its zenith angles follow from the turn of
 // the zenith, theta_camera - theta_entry, whose cosine and sine are sums of products of order one: no digits are lost.
 AirRay enter_air(Atmosphere atmosphere, float camera_altitude_km, vec3 view, vec3 sun) {
-  float radius_km = atmosphere.shape.x;
-  float top_km = atmosphere.shape.y;
+  float radius_km = atmosphere.ground_radius_km;
+  float top_km = atmosphere.top_km;
   AirRay ray;
   ray.altitude_km = max(camera_altitude_km, 0.0);
   ray.mu = clamp(view.z, -1.0, 1.0);
@@ -143,8 +143,8 @@ vec3 marched_optical_depth_to_sun(Atmosphere atmosphere, float altitude_km, floa
 #ifdef SUN_OPTICAL_DEPTH
   return SUN_OPTICAL_DEPTH(atmosphere, altitude_km, mu_sun);
 #else
-  float radius_km = atmosphere.shape.x;
-  float light_length = distance_to_shell_from_inside(radius_km, altitude_km, mu_sun, atmosphere.shape.y);
+  float radius_km = atmosphere.ground_radius_km;
+  float light_length = distance_to_shell_from_inside(radius_km, altitude_km, mu_sun, atmosphere.top_km);
   vec3 column = vec3(0.0, 0.0, 0.0);
   for (int j = 0; j < light_steps; j++) {
     Segment step = quadrature_segment(rule, j, light_steps);
@@ -159,7 +159,7 @@ vec3 marched_optical_depth_to_sun(Atmosphere atmosphere, float altitude_km, floa
 // segment source and extinction are constant: it gives S dt (1 - exp(-tau)) / tau.
 RayLight fixed_march(Atmosphere atmosphere, AirRay ray, ScatteringTowardsEye scattering, int view_steps, int light_steps,
                      int rule) {
-  float radius_km = atmosphere.shape.x;
+  float radius_km = atmosphere.ground_radius_km;
   RayLight light;
   light.radiance = vec3(0.0, 0.0, 0.0);
   light.transmittance = vec3(1.0, 1.0, 1.0);

@@ -22,8 +22,8 @@ struct ScaleCount {
 };
 
 ScaleCount scale_count(Atmosphere atmosphere, Line line) {
-  float scale_a = HAS_RAYLEIGH ? atmosphere.rayleigh.w : (HAS_MIE ? atmosphere.mie_scattering.w : 10.0);
-  float scale_b = HAS_MIE ? atmosphere.mie_scattering.w : scale_a;
+  float scale_a = HAS_RAYLEIGH ? atmosphere.rayleigh_scale_height_km : (HAS_MIE ? atmosphere.mie_scale_height_km : 10.0);
+  float scale_b = HAS_MIE ? atmosphere.mie_scale_height_km : scale_a;
   float high = max(scale_a, scale_b);
   float low = min(scale_a, scale_b);
   ScaleCount count;

@@ -52,10 +52,10 @@ RayLight scattered_light(Atmosphere atmosphere, float altitude_km, vec3 view_dir
     result = fixed_march(atmosphere, ray, scattering, view_count, light_count, rule);
   }
   if (ray.hits_ground) {
-    float mu_sun = mu_sun_along(ray, atmosphere.shape.x, ray.length_km, 0.0);
-    result.radiance += result.transmittance * vec3(atmosphere.ground) * lit_ground(atmosphere, mu_sun, light_count, rule);
+    float mu_sun = mu_sun_along(ray, atmosphere.ground_radius_km, ray.length_km, 0.0);
+    result.radiance += result.transmittance * atmosphere.ground_albedo * lit_ground(atmosphere, mu_sun, light_count, rule);
   }
-  result.radiance *= vec3(atmosphere.sun);
+  result.radiance *= atmosphere.solar_irradiance;
   return result;
 }
 

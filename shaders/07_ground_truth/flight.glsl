@@ -149,7 +149,7 @@ int shell_at(float top_km, float altitude_km, int shells) {
 // The densest of each constituent between two altitudes.
 vec3 densest(Atmosphere atmosphere, float low_km, float high_km) {
   vec3 density = densities(atmosphere, low_km);
-  if (HAS_OZONE) density.z = ozone_density(atmosphere, clamp(atmosphere.ozone.w, low_km, high_km));
+  if (HAS_OZONE) density.z = ozone_density(atmosphere, clamp(atmosphere.ozone_peak_km, low_km, high_km));
   return density;
 }
 
@@ -181,7 +181,7 @@ ShellEnd shell_end(Course course, float top_km, float t_km, int shell, int shell
 // [shell_flight]
 // First collision with anything, ozone included, in one channel (a vector with one 1), under constant majorants.
 Flight shell_flight(Atmosphere atmosphere, Course course, vec3 channel, int shells, Random random) {
-  float top_km = atmosphere.shape.y;
+  float top_km = atmosphere.top_km;
   Flight flight;
   flight.collided = false;
   flight.finished = false;

@@ -103,8 +103,8 @@ Leg fly(Atmosphere atmosphere, Course course, vec3 channel, bool force, float at
     leg.random = flight.random;
     return leg;
   }
-  vec3 rayleigh_per_km = HAS_RAYLEIGH ? vec3(atmosphere.rayleigh) : vec3(0.0, 0.0, 0.0);
-  vec3 mie_per_km = HAS_MIE ? vec3(atmosphere.mie_extinction) : vec3(0.0, 0.0, 0.0);
+  vec3 rayleigh_per_km = HAS_RAYLEIGH ? atmosphere.rayleigh_scattering : vec3(0.0, 0.0, 0.0);
+  vec3 mie_per_km = HAS_MIE ? atmosphere.mie_extinction : vec3(0.0, 0.0, 0.0);
   float rayleigh = dot(rayleigh_per_km, channel);
   float mie = dot(mie_per_km, channel);
   random = draw(random);
@@ -112,8 +112,8 @@ Leg fly(Atmosphere atmosphere, Course course, vec3 channel, bool force, float at
   float rayleigh_all = 0.0;
   float mie_all = 0.0;
   if (force) {
-    if (HAS_RAYLEIGH) rayleigh_all = majorant_column(course, atmosphere.rayleigh.w);
-    if (HAS_MIE) mie_all = majorant_column(course, atmosphere.mie_scattering.w);
+    if (HAS_RAYLEIGH) rayleigh_all = majorant_column(course, atmosphere.rayleigh_scale_height_km);
+    if (HAS_MIE) mie_all = majorant_column(course, atmosphere.mie_scale_height_km);
     vec3 tau = rayleigh_per_km * rayleigh_all + mie_per_km * mie_all;
     leg.meets = tau * vec3(mean_exponential(tau.x), mean_exponential(tau.y), mean_exponential(tau.z));
     leg.wanted = max(leg.meets, vec3(at_least, at_least, at_least));
@@ -147,7 +147,7 @@ Leg fly(Atmosphere atmosphere, Course course, vec3 channel, bool force, float at
   leg.t_km = course.length_km;
   leg.altitude_km = course.altitude_km;
   if (met && HAS_RAYLEIGH && rayleigh_column < 1.0e38) {
-    Flight flight = exponential_flight(course, atmosphere.rayleigh.w, rayleigh, rayleigh_column, leg.t_km, random);
+    Flight flight = exponential_flight(course, atmosphere.rayleigh_scale_height_km, rayleigh, rayleigh_column, leg.t_km, random);
     random = flight.random;
     leg.finished = flight.finished;
     if (flight.collided) {
@@ -157,7 +157,7 @@ Leg fly(Atmosphere atmosphere, Course course, vec3 channel, bool force, float at
     }
   }
   if (met && HAS_MIE && mie_column < 1.0e38) {
-    Flight flight = exponential_flight(course, atmosphere.mie_scattering.w, mie, mie_column, leg.t_km, random);
+    Flight flight = exponential_flight(course, atmosphere.mie_scale_height_km, mie, mie_column, leg.t_km, random);
     random = flight.random;
     leg.finished = leg.finished && flight.finished;
     if (flight.collided) {
@@ -212,13 +212,13 @@ Slope level_ground(Atmosphere atmosphere) {
   slope.distance_km = 0.0;
   slope.altitude_km = 0.0;
   slope.normal = vec3(0.0, 0.0, 1.0);
-  slope.albedo = vec3(atmosphere.ground);
+  slope.albedo = atmosphere.ground_albedo;
   return slope;
 }
 
 Slope first_slope(Atmosphere atmosphere, float altitude_km, AirRay ray, vec3 view, FirstSurface surface) {
-  float radius_km = atmosphere.shape.x;
-  float top_km = atmosphere.shape.y;
+  float radius_km = atmosphere.ground_radius_km;
+  float top_km = atmosphere.top_km;
   float begins_km = 0.0;
   if (altitude_km > top_km) {
     float sine = min(sqrt(view.x * view.x + view.y * view.y), 1.0);
@@ -253,8 +253,8 @@ vec3 moved_along(Course course, Frame at, vec3 v, float t_km, float altitude_km)
 // the radiance of the sky and the ground, without the sun's disc.
 // `surface`, where there is one, ends the first flight; to all later ones it is not there: they meet the smooth planet.
 PathLight trace_path(Atmosphere atmosphere, float altitude_km, vec3 view, vec3 sun, FirstSurface surface, int orders, Random random) {
-  float radius_km = atmosphere.shape.x;
-  float top_km = atmosphere.shape.y;
+  float radius_km = atmosphere.ground_radius_km;
+  float top_km = atmosphere.top_km;
   const bool closed = TRACKING == kTrackExponential || TRACKING == kTrackClosedForm;
   PathLight light;
   light.radiance = vec3(0.0, 0.0, 0.0);
@@ -316,9 +316,9 @@ PathLight trace_path(Atmosphere atmosphere, float altitude_km, vec3 view, vec3 s
     lit = vec3(0.0, 0.0, 0.0);
     if (leg.collided) {
       vec3 density = densities(atmosphere, altitude);
-      vec3 by_rayleigh = vec3(atmosphere.rayleigh) * density.x;
-      vec3 by_mie = vec3(atmosphere.mie_extinction) * density.y;
-      vec3 by_ozone = closed ? vec3(0.0, 0.0, 0.0) : vec3(atmosphere.ozone) * density.z;
+      vec3 by_rayleigh = atmosphere.rayleigh_scattering * density.x;
+      vec3 by_mie = atmosphere.mie_extinction * density.y;
+      vec3 by_ozone = closed ? vec3(0.0, 0.0, 0.0) : atmosphere.ozone_absorption * density.z;
       vec3 by_any = max(by_rayleigh + by_mie + by_ozone, vec3(1.0e-30, 1.0e-30, 1.0e-30));
       float spread_per_km = leg.spread / course.length_km;
       p *= met * by_any * (1.0 - leg.spread) + vec3(spread_per_km, spread_per_km, spread_per_km);
@@ -390,7 +390,7 @@ PathLight trace_path(Atmosphere atmosphere, float altitude_km, vec3 view, vec3 s
     spread = closed && SPREAD && !ENVIRONMENT ? kSpreadLater * (1.0 - min(min(lit.x, lit.y), lit.z)) : 0.0;
     course = course_from(radius_km, top_km, altitude, at.direction.z, sine, to_ground);
   }
-  light.radiance *= vec3(atmosphere.sun);
+  light.radiance *= atmosphere.solar_irradiance;
   return light;
 }
 // [/path]

@@ -27,7 +27,7 @@ shared vec2 group[64];
 // [resolve]
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  const bool inside = all(lessThan(pixel, camera.size.xy));  // no thread leaves early: all meet at the barriers
+  const bool inside = all(lessThan(pixel, camera.size));  // no thread leaves early: all meet at the barriers
   vec2 mine = vec2(0.0);
   if (inside) {
     const Accumulated total = sums[pixel.y * camera.size.x + pixel.x];
@@ -41,9 +41,9 @@ void main() {
 #endif
     if (SUN_DISC && free) {
       const vec3 view = camera_direction(camera, pixel);
-      const vec3 disc = sun_disc_radiance(atmosphere.sun.xyz, atmosphere.shape.w, one_minus_cosine(view, camera.sun.xyz));
+      const vec3 disc = sun_disc_radiance(atmosphere.solar_irradiance, atmosphere.sun_angular_radius, one_minus_cosine(view, camera.sun));
       if (disc.g > 0.0) {
-        const AirRay ray = enter_air(atmosphere, camera.right.w, view, camera.sun.xyz);
+        const AirRay ray = enter_air(atmosphere, camera.altitude_km, view, camera.sun);
         if (!ray.hits_ground) radiance += ray.hits_air ? disc * exp(-extinction(atmosphere, ray_columns(atmosphere, ray))) : disc;
       }
     }

@@ -51,14 +51,14 @@ Turn henyey_greenstein_turn(float g, float u) {
 // least. The weight could take the factor instead, and its mean would stay right, but a product of a thousand such factors is
 // 0 on nearly every path and enormous on one that nobody sees.
 Turn mie_turn(Atmosphere atmosphere, float which, float u) {
-  float g = atmosphere.mie_extinction.w;
-  if (MIE_PHASE == 3 && which < atmosphere.sun.w) g = atmosphere.ground.w;
+  float g = atmosphere.mie_g;
+  if (MIE_PHASE == 3 && which < atmosphere.mie_alpha) g = atmosphere.second_g;
   return henyey_greenstein_turn(g, u);
 }
 
 bool mie_turn_kept(Atmosphere atmosphere, Turn turn, float u) {
   if (MIE_PHASE == 0 || MIE_PHASE == 3) return true;
-  float alpha = MIE_PHASE == 1 ? 1.0 : atmosphere.sun.w;
+  float alpha = MIE_PHASE == 1 ? 1.0 : atmosphere.mie_alpha;
   float nu = 1.0 - turn.one_minus_nu;
   return u * (1.0 + alpha) <= 1.0 + alpha * nu * nu;
 }

@@ -27,7 +27,7 @@ Course course_from(float radius_km, float top_km, float altitude_km, float mu, f
 // Ratio tracking (Novak, Selle, Jarosz 2014): fly through the majorant's collisions and multiply by the share of each that
 // is not real. Its mean is the transmittance, exactly; no integral is evaluated. The majorant covers all three channels.
 Sunlight ratio_tracked(Atmosphere atmosphere, Course course, int shells, Random random) {
-  float top_km = atmosphere.shape.y;
+  float top_km = atmosphere.top_km;
   Sunlight light;
   light.transmittance = vec3(1.0, 1.0, 1.0);
   light.finished = false;
@@ -104,14 +104,14 @@ vec3 columns_along(Atmosphere atmosphere, Course course, float t_km, float altit
   bool dips = s_0 < 0.0 && s_1 > 0.0;
   vec3 column = vec3(0.0, 0.0, 0.0);
   if (HAS_RAYLEIGH) {
-    float a = column_outward(line, course.altitude_km, abs(s_0), atmosphere.rayleigh.w);
-    float b = column_outward(line, altitude_km, abs(s_1), atmosphere.rayleigh.w);
-    column.x = dips ? 2.0 * column_outward(line, line.tangent_km, 0.0, atmosphere.rayleigh.w) - a - b : abs(a - b);
+    float a = column_outward(line, course.altitude_km, abs(s_0), atmosphere.rayleigh_scale_height_km);
+    float b = column_outward(line, altitude_km, abs(s_1), atmosphere.rayleigh_scale_height_km);
+    column.x = dips ? 2.0 * column_outward(line, line.tangent_km, 0.0, atmosphere.rayleigh_scale_height_km) - a - b : abs(a - b);
   }
   if (HAS_MIE) {
-    float a = column_outward(line, course.altitude_km, abs(s_0), atmosphere.mie_scattering.w);
-    float b = column_outward(line, altitude_km, abs(s_1), atmosphere.mie_scattering.w);
-    column.y = dips ? 2.0 * column_outward(line, line.tangent_km, 0.0, atmosphere.mie_scattering.w) - a - b : abs(a - b);
+    float a = column_outward(line, course.altitude_km, abs(s_0), atmosphere.mie_scale_height_km);
+    float b = column_outward(line, altitude_km, abs(s_1), atmosphere.mie_scale_height_km);
+    column.y = dips ? 2.0 * column_outward(line, line.tangent_km, 0.0, atmosphere.mie_scale_height_km) - a - b : abs(a - b);
   }
   if (HAS_OZONE) {
     float a = ozone_column_from_tangent(atmosphere, line, course.altitude_km);
@@ -123,8 +123,8 @@ vec3 columns_along(Atmosphere atmosphere, Course course, float t_km, float altit
 
 // Columns of a whole ray.
 vec3 ray_columns(Atmosphere atmosphere, AirRay ray) {
-  Course course = course_from(atmosphere.shape.x, atmosphere.shape.y, ray.altitude_km, ray.mu, ray.sine, ray.hits_ground);
-  return columns_along(atmosphere, course, course.length_km, ray.hits_ground ? 0.0 : atmosphere.shape.y);
+  Course course = course_from(atmosphere.ground_radius_km, atmosphere.top_km, ray.altitude_km, ray.mu, ray.sine, ray.hits_ground);
+  return columns_along(atmosphere, course, course.length_km, ray.hits_ground ? 0.0 : atmosphere.top_km);
 }
 // [/columns]
 
@@ -139,21 +139,21 @@ Sunlight sunlight(Atmosphere atmosphere, float altitude_km, float mu_sun, int tr
     return light;
   }
   float sine = sqrt(max((1.0 - mu_sun) * (1.0 + mu_sun), 0.0));
-  Course course = course_from(atmosphere.shape.x, atmosphere.shape.y, altitude_km, mu_sun, sine, false);
+  Course course = course_from(atmosphere.ground_radius_km, atmosphere.top_km, altitude_km, mu_sun, sine, false);
   if (tracking != kTrackExponential) return ratio_tracked(atmosphere, course, shells, random);
   light.transmittance = vec3(1.0, 1.0, 1.0);
-  if (HAS_RAYLEIGH) light = exponential_ratio_tracked(course, atmosphere.rayleigh.w, vec3(atmosphere.rayleigh), light.random);
+  if (HAS_RAYLEIGH) light = exponential_ratio_tracked(course, atmosphere.rayleigh_scale_height_km, atmosphere.rayleigh_scattering, light.random);
   if (HAS_MIE) {
-    Sunlight mie = exponential_ratio_tracked(course, atmosphere.mie_scattering.w, vec3(atmosphere.mie_extinction), light.random);
+    Sunlight mie = exponential_ratio_tracked(course, atmosphere.mie_scale_height_km, atmosphere.mie_extinction, light.random);
     light.transmittance *= mie.transmittance;
     light.finished = light.finished && mie.finished;
     light.random = mie.random;
   }
   if (HAS_OZONE) {
     Line line = line_through(course.radius_km, altitude_km, course.mu, course.sine);
-    float ozone = ozone_column_between(atmosphere, line, altitude_km, max(atmosphere.shape.y, altitude_km));
+    float ozone = ozone_column_between(atmosphere, line, altitude_km, max(atmosphere.top_km, altitude_km));
     if (mu_sun < 0.0) ozone += 2.0 * ozone_column_from_tangent(atmosphere, line, altitude_km);
-    light.transmittance *= exp(-vec3(atmosphere.ozone) * ozone);
+    light.transmittance *= exp(-atmosphere.ozone_absorption * ozone);
   }
   return light;
 }

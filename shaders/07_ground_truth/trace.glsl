@@ -28,7 +28,7 @@ layout(push_constant) uniform Push {
 // [trace]
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, camera.size.xy))) return;
+  if (any(greaterThanEqual(pixel, camera.size))) return;
   const uint place = uint(pixel.y * camera.size.x + pixel.x);
   const Atmosphere air = atmosphere;
   const vec3 view = camera_direction(camera, pixel);
@@ -40,8 +40,8 @@ void main() {
   vec3 sum = vec3(0.0);
   uint cut = 0u;
   for (int i = 0; i < batch.y; ++i) {
-    const Random random = random_stream(place, uint(batch.x + i), uint(camera.size.z));
-    const PathLight light = trace_path(air, camera.right.w, view, camera.sun.xyz, surface, batch.z, random);
+    const Random random = random_stream(place, uint(batch.x + i), uint(camera.seed));
+    const PathLight light = trace_path(air, camera.altitude_km, view, camera.sun, surface, batch.z, random);
     sum += light.radiance;
     if (!light.finished) cut += 1u;
   }

@@ -15,15 +15,15 @@ layout(push_constant) uniform Push {
 // [image]
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, camera.size.xy))) return;
+  if (any(greaterThanEqual(pixel, camera.size))) return;
   // A copy: loops then keep the numbers at hand instead of reading the uniform block at every sample.
   const Atmosphere air = atmosphere;
   const vec3 view = camera_direction(camera, pixel);
-  const vec3 sun = camera.sun.xyz;
-  const float altitude_km = camera.right.w;
+  const vec3 sun = camera.sun;
+  const float altitude_km = camera.altitude_km;
 
   // Only the sun's disc is seen through the air and needs the transmittance: a few pixels of the picture.
-  const vec3 disc = SUN_DISC ? sun_disc_radiance(air.sun.xyz, air.shape.w, one_minus_cosine(view, sun)) : vec3(0.0);
+  const vec3 disc = SUN_DISC ? sun_disc_radiance(air.solar_irradiance, air.sun_angular_radius, one_minus_cosine(view, sun)) : vec3(0.0);
   const bool on_disc = SUN_DISC && disc.g > 0.0;
   const RayLight sky = scattered_light(air, altitude_km, view, sun, steps.x, NO_LIGHT_STEPS, RULE, on_disc);
   vec3 radiance = sky.radiance;

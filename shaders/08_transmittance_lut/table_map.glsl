@@ -35,8 +35,8 @@ float touching_chord(float ground_radius_km, float a_km, float b_km) {
 // [transmittance_uv]
 // Domain: 0 <= altitude_km <= top, mu down to the horizon's (published) or to 0 (folded); beyond it the nearest texel.
 vec2 transmittance_uv(Atmosphere atmosphere, float altitude_km, float mu, ivec2 size) {
-  float radius_km = atmosphere.shape.x;
-  float top_km = atmosphere.shape.y;
+  float radius_km = atmosphere.ground_radius_km;
+  float top_km = atmosphere.top_km;
   float h = clamp(altitude_km, 0.0, top_km);
   float rho = touching_chord(radius_km, 0.0, h);
   float whole = touching_chord(radius_km, 0.0, top_km);
@@ -57,8 +57,8 @@ struct TablePath {
 // The path a place of the table stands for: the inverse. h = rho^2 / (R + sqrt(R^2 + rho^2)) has nothing to cancel;
 //   mu = (d_0^2 - d^2) / (2 r d),  d_0^2 = (top - h)(2R + top + h).
 TablePath transmittance_path(Atmosphere atmosphere, vec2 uv, ivec2 size) {
-  float radius_km = atmosphere.shape.x;
-  float top_km = atmosphere.shape.y;
+  float radius_km = atmosphere.ground_radius_km;
+  float top_km = atmosphere.top_km;
   float x = clamp(unit_from_uv(uv.x, size.x), 0.0, 1.0);
   float y = clamp(unit_from_uv(uv.y, size.y), 0.0, 1.0);
   float whole = touching_chord(radius_km, 0.0, top_km);

@@ -10,8 +10,8 @@
 // nothing of the profiles but their densities; steps = 0: the closed form of chapter 05, for exponentials and a tent.
 vec3 table_columns(Atmosphere atmosphere, float altitude_km, float mu, int steps) {
   if (steps == 0) return sun_columns(atmosphere, altitude_km, mu);
-  float radius_km = atmosphere.shape.x;
-  float d = distance_to_shell_from_inside(radius_km, altitude_km, mu, atmosphere.shape.y);
+  float radius_km = atmosphere.ground_radius_km;
+  float d = distance_to_shell_from_inside(radius_km, altitude_km, mu, atmosphere.top_km);
   vec3 column = vec3(0.0, 0.0, 0.0);
   for (int i = 0; i < steps; i++) {
     Segment segment = quadrature_segment(kRuleGaussLegendre, i, steps);
@@ -29,8 +29,8 @@ vec3 table_texel(Atmosphere atmosphere, vec2 uv, ivec2 size, int steps) {
   vec3 tau = extinction(atmosphere, table_columns(atmosphere, path.altitude_km, path.mu, steps));
   if (TABLE_STORED == kStoredMeanExtinction) {
     // On the top itself the path has no length: the mean over a path shorter than 1 km is the extinction in its middle.
-    float d = distance_to_shell_from_inside(atmosphere.shape.x, path.altitude_km, path.mu, atmosphere.shape.y);
-    if (d < 1.0) return extinction(atmosphere, densities(atmosphere, 0.5 * (path.altitude_km + atmosphere.shape.y)));
+    float d = distance_to_shell_from_inside(atmosphere.ground_radius_km, path.altitude_km, path.mu, atmosphere.top_km);
+    if (d < 1.0) return extinction(atmosphere, densities(atmosphere, 0.5 * (path.altitude_km + atmosphere.top_km)));
     return tau / d;
   }
   if (TABLE_STORED == kStoredOpticalDepth) return tau;

@@ -13,7 +13,7 @@
 // Optical depth stored for a path, whatever the table holds.
 vec3 stored_optical_depth(Atmosphere atmosphere, float altitude_km, float mu) {
   vec3 stored = read_transmittance_table(transmittance_uv(atmosphere, altitude_km, mu, transmittance_table_size()));
-  if (TABLE_STORED == kStoredMeanExtinction) return stored * distance_to_shell_from_inside(atmosphere.shape.x, altitude_km, mu, atmosphere.shape.y);
+  if (TABLE_STORED == kStoredMeanExtinction) return stored * distance_to_shell_from_inside(atmosphere.ground_radius_km, altitude_km, mu, atmosphere.top_km);
   if (TABLE_STORED == kStoredOpticalDepth) return stored;
   return log(max(stored, vec3(1.0e-37, 1.0e-37, 1.0e-37))) * -1.0;
 }
@@ -23,14 +23,14 @@ vec3 stored_optical_depth(Atmosphere atmosphere, float altitude_km, float mu) {
 vec3 clear_optical_depth(Atmosphere atmosphere, float altitude_km, float mu) {
   if (TABLE_MAPPING == kMappingPublished || mu >= 0.0) return stored_optical_depth(atmosphere, altitude_km, mu);
   float sine = sqrt(max((1.0 - mu) * (1.0 + mu), 0.0));
-  float lowest_km = clamp(tangent_altitude(atmosphere.shape.x, altitude_km, mu, sine), 0.0, altitude_km);
+  float lowest_km = clamp(tangent_altitude(atmosphere.ground_radius_km, altitude_km, mu, sine), 0.0, altitude_km);
   vec3 through = stored_optical_depth(atmosphere, lowest_km, 0.0) * 2.0;
   return max(through - stored_optical_depth(atmosphere, altitude_km, mu * -1.0), vec3(0.0, 0.0, 0.0));
 }
 
 // Transmittance from altitude h in the air (0 ... top) to the top; 0 where the ground is in the way.
 vec3 transmittance_to_top(Atmosphere atmosphere, float altitude_km, float mu) {
-  if (mu < 0.0 && tangent_altitude(atmosphere.shape.x, altitude_km, mu, sqrt(max((1.0 - mu) * (1.0 + mu), 0.0))) < 0.0) return vec3(0.0, 0.0, 0.0);
+  if (mu < 0.0 && tangent_altitude(atmosphere.ground_radius_km, altitude_km, mu, sqrt(max((1.0 - mu) * (1.0 + mu), 0.0))) < 0.0) return vec3(0.0, 0.0, 0.0);
   return exp(clear_optical_depth(atmosphere, altitude_km, mu) * -1.0);
 }
 // [/look_up]

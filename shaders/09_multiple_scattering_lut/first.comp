@@ -16,7 +16,7 @@ void main() {
   clear_sums();
   for (int item = thread; item < DIRECTIONS * PARTS; item += THREADS) {
     const int n = item % DIRECTIONS, part = item / DIRECTIONS, ray = first_node_of(texel.y, n);
-    const WeightedDirection direction = direction_of_set(DIRECTION_SET, n, DIRECTIONS, horizon_cosine(method.air.shape.x, point.y));
+    const WeightedDirection direction = direction_of_set(DIRECTION_SET, n, DIRECTIONS, horizon_cosine(method.air.ground_radius_km, point.y));
     const float nu = dot(direction.look, sun);
     const vec2 phases = beam_phases(method.chi, nu);
     vec3 light = part == 0 ? sun_at_end(method.air, nodes[ray + STEPS], point.x, nu) : vec3(0.0);

@@ -50,7 +50,7 @@ vec2 beam_phases(vec2 chi, float nu) {
 // Sunlight scattered at a node, and sunlight that the ground at the ray's end returns. mu_sun, nu: of the ray's first point.
 vec3 sun_at_node(Atmosphere air, RayNode node, vec2 phases, float mu_sun, float nu) {
   float mu = turned_cosine(node, mu_sun, nu);
-  if (!sun_above_horizon(air.shape.x, node.place.x, mu)) return vec3(0.0, 0.0, 0.0);
+  if (!sun_above_horizon(air.ground_radius_km, node.place.x, mu)) return vec3(0.0, 0.0, 0.0);
   vec3 scattered = vec3(node.molecules) * phases.x + vec3(node.aerosol) * phases.y;
   return scattered * exp(-extinction(air, sun_columns(air, node.place.x, mu)));
 }

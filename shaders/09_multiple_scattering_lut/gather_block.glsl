@@ -20,6 +20,6 @@ int first_node_of(int row, int direction) {
 }
 
 // x: sun's zenith cosine, y: altitude.
-vec2 texel_point(ivec2 texel) { return table_point(MS_MAP, atmosphere.shape.y, table_unit_of_texel(vec2(texel), float(MS_SIZE))); }
+vec2 texel_point(ivec2 texel) { return table_point(MS_MAP, atmosphere.top_km, table_unit_of_texel(vec2(texel), float(MS_SIZE))); }
 
 #endif

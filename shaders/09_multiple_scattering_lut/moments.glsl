@@ -33,11 +33,11 @@ vec3 draine_moments(float g, float alpha) {
 }
 
 vec3 mie_moments(Atmosphere atmosphere) {
-  float g = atmosphere.mie_extinction.w;
+  float g = atmosphere.mie_g;
   if (MIE_PHASE == 1) return draine_moments(g, 1.0);
-  if (MIE_PHASE == 2) return draine_moments(g, atmosphere.sun.w);
+  if (MIE_PHASE == 2) return draine_moments(g, atmosphere.mie_alpha);
   vec3 first = draine_moments(g, 0.0);
-  if (MIE_PHASE == 3) return first * (1.0 - atmosphere.sun.w) + draine_moments(atmosphere.ground.w, 0.0) * atmosphere.sun.w;
+  if (MIE_PHASE == 3) return first * (1.0 - atmosphere.mie_alpha) + draine_moments(atmosphere.second_g, 0.0) * atmosphere.mie_alpha;
   return first;
 }
 // [/mie_moments]
@@ -50,11 +50,11 @@ float straight_share(vec3 chi) { return clamp(chi.z, 0.0, 0.99); }
 
 Atmosphere scaled_air(Atmosphere atmosphere, float share) {
   Atmosphere scaled = atmosphere;
-  vec3 straight = vec3(atmosphere.mie_scattering) * share;
-  vec3 scattering = vec3(atmosphere.mie_scattering) - straight;
-  vec3 lost = max(vec3(atmosphere.mie_extinction) - straight, vec3(0.0, 0.0, 0.0));
-  scaled.mie_scattering = vec4(scattering, atmosphere.mie_scattering.w);
-  scaled.mie_extinction = vec4(lost, atmosphere.mie_extinction.w);
+  vec3 straight = atmosphere.mie_scattering * share;
+  vec3 scattering = atmosphere.mie_scattering - straight;
+  vec3 lost = max(atmosphere.mie_extinction - straight, vec3(0.0, 0.0, 0.0));
+  scaled.mie_scattering = scattering;
+  scaled.mie_extinction = lost;
   return scaled;
 }
 

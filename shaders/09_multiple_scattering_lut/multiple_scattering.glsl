@@ -13,10 +13,10 @@ RayLight first_order_light(MethodAir method, Atmosphere atmosphere, AirRay ray, 
                                                            one_minus_cosine(view_direction, sun_direction * -1.0));
   RayLight light = adapted_march(method.air, ray, scattering, max(view_steps, 1), ray.hits_ground);
   if (ray.hits_ground) {
-    float mu_sun = mu_sun_along(ray, atmosphere.shape.x, ray.length_km, 0.0);
+    float mu_sun = mu_sun_along(ray, atmosphere.ground_radius_km, ray.length_km, 0.0);
     vec3 lit = lit_ground(method.air, mu_sun, 1, kRuleAdapted);
     if (MS_METHOD != kMethodPublished) lit += sky_irradiance(atmosphere, 0.0, mu_sun) * 0.31830988618379067;
-    light.radiance += light.transmittance * vec3(atmosphere.ground) * lit;
+    light.radiance += light.transmittance * atmosphere.ground_albedo * lit;
   }
   return light;
 }
@@ -42,7 +42,7 @@ RayLight all_orders_light(Atmosphere atmosphere, float altitude_km, vec3 view_di
   result.radiance = first_order_light(method, atmosphere, ray, view_direction, sun_direction, view_steps).radiance;
   result.radiance += further_orders_light(method, ray, source_steps);
   if (want_transmittance) result.transmittance = ray_transmittance(atmosphere, source_ray(atmosphere, ray));
-  result.radiance *= vec3(atmosphere.sun);
+  result.radiance *= atmosphere.solar_irradiance;
   return result;
 }
 // [/all_orders]

@@ -16,7 +16,7 @@ void main() {
   if (row >= MS_SIZE) return;
   const Atmosphere air = method_air(atmosphere, MS_METHOD).air;
   const float altitude_km = texel_point(ivec2(0, row)).y;
-  const WeightedDirection direction = direction_of_set(DIRECTION_SET, ray % elevations, DIRECTIONS, horizon_cosine(air.shape.x, altitude_km));
+  const WeightedDirection direction = direction_of_set(DIRECTION_SET, ray % elevations, DIRECTIONS, horizon_cosine(air.ground_radius_km, altitude_km));
   const SourceRay along = source_ray(air, enter_air(air, altitude_km, direction.look, vec3(0.0, 0.0, 1.0)));
   const NodePanel placed = panel_nodes(air, along, panel, panels);
   for (int i = 0; i < 4; ++i) nodes[ray * (STEPS + 1) + 4 * panel + i] = placed.node[i];

@@ -18,9 +18,9 @@ struct RayNode {
 float turned_cosine(RayNode node, float mu, float nu) { return clamp(node.place.y * mu + node.place.z * nu, -1.0, 1.0); }
 
 RayNode node_at(Atmosphere atmosphere, AirRay ray, float altitude_km, float t_km) {
-  float r = atmosphere.shape.x + altitude_km;
+  float r = atmosphere.ground_radius_km + altitude_km;
   RayNode node;
-  node.place = vec4(altitude_km, (atmosphere.shape.x + ray.altitude_km) / r, t_km / r, 0.0);
+  node.place = vec4(altitude_km, (atmosphere.ground_radius_km + ray.altitude_km) / r, t_km / r, 0.0);
   node.molecules = vec4(0.0, 0.0, 0.0, 0.0);
   node.aerosol = vec4(0.0, 0.0, 0.0, 0.0);
   return node;
@@ -30,7 +30,7 @@ RayNode node_at(Atmosphere atmosphere, AirRay ray, float altitude_km, float t_km
 // the ray leaves the air.
 RayNode ray_end(Atmosphere atmosphere, SourceRay along) {
   RayNode node = node_at(atmosphere, along.ray, 0.0, along.ray.length_km);
-  if (along.ray.hits_air && along.ray.hits_ground) node.molecules = vec4(ray_transmittance(atmosphere, along) * vec3(atmosphere.ground), 0.0);
+  if (along.ray.hits_air && along.ray.hits_ground) node.molecules = vec4(ray_transmittance(atmosphere, along) * atmosphere.ground_albedo, 0.0);
   return node;
 }
 // [/ray_node]
@@ -57,7 +57,7 @@ NodeCells node_cells(Atmosphere atmosphere, SourceRay along) {
     CountedPoint point = point_at_count(along.count, along.ray, along.line, along.x_begin + cells.width * (float(j) + 0.5));
     vec3 air = densities(atmosphere, point.altitude_km) * point.dt_dx;
     vec3 depth = extinction(atmosphere, column + air * (0.5 * cells.width));
-    vec3 light = (vec3(atmosphere.rayleigh) * air.x + vec3(atmosphere.mie_scattering) * air.y) * exp(-depth);
+    vec3 light = (atmosphere.rayleigh_scattering * air.x + atmosphere.mie_scattering * air.y) * exp(-depth);
     float tau = max(max(depth.x, depth.y), depth.z);
     seen[j] = vec4(light, abs(tau - tau_before) / cells.width);
     tau_before = tau;
@@ -95,7 +95,7 @@ NodePanel panel_nodes(Atmosphere atmosphere, SourceRay along, int panel, int pan
   float x_a = panel_end(along, cells, panel, panels);
   float dx = panel_end(along, cells, panel + 1, panels) - x_a;
   vec3 before = panel > 0 ? columns_to_count(atmosphere, along.ray, along.line, along.count, x_a) : vec3(0.0, 0.0, 0.0);
-  float ozone_begin = ozone_from_tangent(atmosphere, along.line, along.ray.altitude_km, (atmosphere.shape.x + along.ray.altitude_km) * along.ray.mu);
+  float ozone_begin = ozone_from_tangent(atmosphere, along.line, along.ray.altitude_km, (atmosphere.ground_radius_km + along.ray.altitude_km) * along.ray.mu);
   NodePanel result;
   vec4 rayleigh;
   vec4 mie;
@@ -118,8 +118,8 @@ NodePanel panel_nodes(Atmosphere atmosphere, SourceRay along, int panel, int pan
     passed_width += kGauss4Weight[i];
     vec3 column = vec3(before.x + inside.x, before.y + inside.y, ozone[i] - ozone_begin);
     vec3 reaches = exp(-extinction(atmosphere, column)) * kGauss4Weight[i];
-    result.node[i].molecules = vec4(vec3(atmosphere.rayleigh) * air.x * reaches, 0.0);
-    result.node[i].aerosol = vec4(vec3(atmosphere.mie_scattering) * air.y * reaches, 0.0);
+    result.node[i].molecules = vec4(atmosphere.rayleigh_scattering * air.x * reaches, 0.0);
+    result.node[i].aerosol = vec4(atmosphere.mie_scattering * air.y * reaches, 0.0);
   }
   return result;
 }

@@ -17,7 +17,7 @@ struct SourceRay {
 SourceRay source_ray(Atmosphere atmosphere, AirRay ray) {
   SourceRay along;
   along.ray = ray;
-  along.line = line_through(atmosphere.shape.x, ray.altitude_km, ray.mu, ray.sine);
+  along.line = line_through(atmosphere.ground_radius_km, ray.altitude_km, ray.mu, ray.sine);
   along.count = scale_count(atmosphere, along.line);
   along.x_begin = count_along(along.count, along.line, ray, 0.0);
   along.x_end = max(count_along(along.count, along.line, ray, ray.length_km), along.x_begin);
@@ -37,11 +37,11 @@ vec3 ray_transmittance(Atmosphere atmosphere, SourceRay along) {
 
 // Source per count at a point, from its densities per count.
 vec3 source_at(Atmosphere atmosphere, AirRay ray, CountedPoint point, vec3 air, vec2 chi) {
-  float mu_sun = mu_sun_along(ray, atmosphere.shape.x, point.t_km, point.altitude_km);
-  vec3 molecules = vec3(atmosphere.rayleigh) * air.x;
-  vec3 aerosol = vec3(atmosphere.mie_scattering) * air.y;
+  float mu_sun = mu_sun_along(ray, atmosphere.ground_radius_km, point.t_km, point.altitude_km);
+  vec3 molecules = atmosphere.rayleigh_scattering * air.x;
+  vec3 aerosol = atmosphere.mie_scattering * air.y;
   if (MS_METHOD != kMethodMoments) return multiple_scattering(atmosphere, point.altitude_km, mu_sun) * (molecules + aerosol);
-  float look_z = clamp(point.s_km / (atmosphere.shape.x + point.altitude_km), -1.0, 1.0);
+  float look_z = clamp(point.s_km / (atmosphere.ground_radius_km + point.altitude_km), -1.0, 1.0);
   return scattered_towards_eye(molecules, aerosol, multiple_scattering_moments(atmosphere, point.altitude_km, mu_sun), chi,
                                look_x_from(ray.nu, mu_sun, look_z), look_z);
 }
@@ -103,8 +103,8 @@ vec3 source_march(Atmosphere atmosphere, SourceRay along, int steps, vec2 chi) {
     CountedPoint point = point_at_count(along.count, along.ray, along.line, along.x_begin + width * (float(j) + 0.5));
     vec3 air = densities(atmosphere, point.altitude_km) * point.dt_dx;
     vec3 depth = extinction(atmosphere, column + air * (0.5 * width));
-    vec3 light = (vec3(atmosphere.rayleigh) * air.x + vec3(atmosphere.mie_scattering) * air.y) * exp(-depth);
-    light *= multiple_scattering(atmosphere, point.altitude_km, mu_sun_along(along.ray, atmosphere.shape.x, point.t_km, point.altitude_km));
+    vec3 light = (atmosphere.rayleigh_scattering * air.x + atmosphere.mie_scattering * air.y) * exp(-depth);
+    light *= multiple_scattering(atmosphere, point.altitude_km, mu_sun_along(along.ray, atmosphere.ground_radius_km, point.t_km, point.altitude_km));
     column += air * width;
     float tau = max(max(depth.x, depth.y), depth.z);
     float slope = abs(tau - (j == 0 ? tau : tau_before)) / width;
@@ -128,7 +128,7 @@ vec3 source_march(Atmosphere atmosphere, SourceRay along, int steps, vec2 chi) {
   float total = 0.0;
   for (int j = first; j <= last; j++) total += weight[j];
 
-  float ozone_begin = ozone_from_tangent(atmosphere, along.line, along.ray.altitude_km, (atmosphere.shape.x + along.ray.altitude_km) * along.ray.mu);
+  float ozone_begin = ozone_from_tangent(atmosphere, along.line, along.ray.altitude_km, (atmosphere.ground_radius_km + along.ray.altitude_km) * along.ray.mu);
   float from = along.x_begin + width * float(first);
   Stretch march;
   march.radiance = radiance;

@@ -51,12 +51,12 @@ vec3 encode_mean(vec3 mean) { return MS_MAP == kMapPublished ? mean : log2(max(m
 // Mean radiance of the light that arrives having been scattered at least once (or reflected by the ground), per unit of
 // solar irradiance: Psi. What the air scatters of it, sigma_s Psi for an isotropic phase function, is all orders from the second on.
 vec3 multiple_scattering(Atmosphere atmosphere, float altitude_km, float mu_sun) {
-  vec2 uv = table_uv(table_unit(MS_MAP, atmosphere.shape.y, altitude_km, mu_sun), float(MS_SIZE));
+  vec2 uv = table_uv(table_unit(MS_MAP, atmosphere.top_km, altitude_km, mu_sun), float(MS_SIZE));
   return decode_mean(read_layer(uv, 0));
 }
 
 Moments multiple_scattering_moments(Atmosphere atmosphere, float altitude_km, float mu_sun) {
-  vec2 uv = table_uv(table_unit(MS_MAP, atmosphere.shape.y, altitude_km, mu_sun), float(MS_SIZE));
+  vec2 uv = table_uv(table_unit(MS_MAP, atmosphere.top_km, altitude_km, mu_sun), float(MS_SIZE));
   Moments light;
   light.mean = decode_mean(read_layer(uv, 0));
   light.z = vec3(0.0, 0.0, 0.0);
@@ -78,7 +78,7 @@ Moments multiple_scattering_moments(Atmosphere atmosphere, float altitude_km, fl
 // Irradiance of a horizontal plane by the sky (not the sun), per unit of solar irradiance. The published method has none:
 // pi times Psi is what an isotropic sky of that mean would give.
 vec3 sky_irradiance(Atmosphere atmosphere, float altitude_km, float mu_sun) {
-  vec2 uv = table_uv(table_unit(MS_MAP, atmosphere.shape.y, altitude_km, mu_sun), float(MS_SIZE));
+  vec2 uv = table_uv(table_unit(MS_MAP, atmosphere.top_km, altitude_km, mu_sun), float(MS_SIZE));
   vec3 isotropic = decode_mean(read_layer(uv, 0)) * 3.14159265358979324;
   if (MS_METHOD == kMethodPublished) return isotropic;
   return isotropic * read_layer(uv, kLayers - 1);

@@ -39,7 +39,7 @@ void main() {
   const ivec2 texel = ivec2(min(int(gl_WorkGroupID.x) * 32 + x, size.x - 1), gl_WorkGroupID.y);
   const Atmosphere air = atmosphere;
   const SkyViewPlace at = sky_view_texel(texel, size);
-  const vec2 zenith = sky_view_zenith(horizon_at(air.shape.x, place.x), at.from_horizon, at.below);
+  const vec2 zenith = sky_view_zenith(horizon_at(air.ground_radius_km, place.x), at.from_horizon, at.below);
   const vec3 view = vec3(sky_view_azimuth(at.across) * zenith.y, zenith.x);
   const vec3 sun = vec3(place.z, 0.0, place.y);
 #ifdef SINGLE_ORDER
@@ -55,7 +55,7 @@ void main() {
   }
   barrier();
   if (gl_LocalInvocationID.y == 1) return;
-  light = (light + further[x]) * air.sun.rgb;
+  light = (light + further[x]) * air.solar_irradiance;
 #endif
   imageStore(sky_view, texel, vec4(min(light / SKY_VIEW_UNIT, vec3(65504.0)), 1.0));
 }

@@ -32,6 +32,6 @@ void main() {
   const Atmosphere air = atmosphere;
   const vec3 view = rays[i].view.xyz;
   const vec3 sun = rays[i].sun.xyz;
-  results[2 * i] = vec4(sky_view_radiance(air.shape.x, rays[i].view.w, view, sun), 0.0);
+  results[2 * i] = vec4(sky_view_radiance(air.ground_radius_km, rays[i].view.w, view, sun), 0.0);
   results[2 * i + 1] = vec4(single_scattering(air, rays[i].view.w, view, sun, 8, 1, kRuleAdapted).transmittance, 0.0);
 }

@@ -29,14 +29,14 @@ layout(push_constant) uniform Push {
 // [sky]
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, camera.size.xy))) return;
+  if (any(greaterThanEqual(pixel, camera.size))) return;
   const vec3 view = camera_direction(camera, pixel);
-  const vec3 sun = camera.sun.xyz;
-  const float altitude_km = camera.right.w;
-  vec3 radiance = sky_view_radiance(atmosphere.shape.x, altitude_km, view, sun);
+  const vec3 sun = camera.sun;
+  const float altitude_km = camera.altitude_km;
+  vec3 radiance = sky_view_radiance(atmosphere.ground_radius_km, altitude_km, view, sun);
 #ifdef SUN_DISC
   // The disc is too small for any table: it is drawn, through the air that chapter 08's table knows.
-  const vec3 disc = sun_disc_radiance(atmosphere.sun.xyz, atmosphere.shape.w, one_minus_cosine(view, sun));
+  const vec3 disc = sun_disc_radiance(atmosphere.solar_irradiance, atmosphere.sun_angular_radius, one_minus_cosine(view, sun));
   if (disc.g > 0.0) {
     const AirRay ray = enter_air(atmosphere, altitude_km, view, sun);
     const vec3 through = ray.hits_air ? transmittance_to_top(atmosphere, ray.altitude_km, ray.mu) : vec3(1.0);

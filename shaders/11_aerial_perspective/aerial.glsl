@@ -13,7 +13,7 @@
 
 // Transmittance of (method's) air from a point to the top; 0 where the planet is in the way.
 vec3 sun_through_air(Atmosphere air, float altitude_km, float mu_sun) {
-  if (!sun_above_horizon(air.shape.x, altitude_km, mu_sun)) return vec3(0.0, 0.0, 0.0);
+  if (!sun_above_horizon(air.ground_radius_km, altitude_km, mu_sun)) return vec3(0.0, 0.0, 0.0);
   return exp(extinction(air, sun_columns(air, altitude_km, mu_sun)) * -1.0);
 }
 
@@ -41,13 +41,13 @@ Veil behind(MethodAir method, AirRay ray, ScatteringTowardsEye scattering, Veil 
     float offset = samples == 1 ? 0.5 : (i % 2 == 0 ? 0.42264973081037424 : 0.57735026918962576);
     CountedPoint point;
     point.t_km = t_a + (float(i) + offset) * dt;
-    point.altitude_km = max(altitude_along(air.shape.x, ray.altitude_km, ray.mu, point.t_km), 0.0);
-    point.s_km = (air.shape.x + ray.altitude_km) * ray.mu + point.t_km;
+    point.altitude_km = max(altitude_along(air.ground_radius_km, ray.altitude_km, ray.mu, point.t_km), 0.0);
+    point.s_km = (air.ground_radius_km + ray.altitude_km) * ray.mu + point.t_km;
     point.dt_dx = 1.0;
-    if (point.altitude_km <= air.shape.y) {
+    if (point.altitude_km <= air.top_km) {
       vec3 density = densities(air, point.altitude_km);
       vec3 tau = extinction(air, density) * dt;
-      float mu_sun = mu_sun_along(ray, air.shape.x, point.t_km, point.altitude_km);
+      float mu_sun = mu_sun_along(ray, air.ground_radius_km, point.t_km, point.altitude_km);
       vec3 source = (scattering.rayleigh * density.x + scattering.mie * density.y) * sun_through_air(air, point.altitude_km, mu_sun) *
                     sun_behind_terrain(point.t_km, point.altitude_km);
       if (HIGHER_ORDERS) source += source_at(air, ray, point, density, method.chi);

@@ -39,7 +39,7 @@ float sun_over(vec2 place_km, float altitude_km) {
 
 float sun_behind_terrain(float t_km, float altitude_km) {
   if (!HAS_SHADOWS) return 1.0;
-  return sun_over(place_below(atmosphere.shape.x, ray_start_km + ray_direction * t_km), altitude_km);
+  return sun_over(place_below(atmosphere.ground_radius_km, ray_start_km + ray_direction * t_km), altitude_km);
 }
 // [/sun_behind_terrain]
 
@@ -54,9 +54,9 @@ struct ClippedRay {
 };
 ClippedRay clipped_ray(vec3 view, float altitude_km) {
   ClippedRay ray;
-  ray.air = enter_air(atmosphere, altitude_km, view, camera.sun.xyz);
+  ray.air = enter_air(atmosphere, altitude_km, view, camera.sun);
   ray.begins_km = 0.0;
-  if (altitude_km > atmosphere.shape.y) ray.begins_km = max(distance_to_shell_from_outside(atmosphere.shape.x, altitude_km, view.z, length(view.xy), atmosphere.shape.y), 0.0);
+  if (altitude_km > atmosphere.top_km) ray.begins_km = max(distance_to_shell_from_outside(atmosphere.ground_radius_km, altitude_km, view.z, length(view.xy), atmosphere.top_km), 0.0);
   ray_direction = to_global(view);
   ray_start_km = position.xyz + ray_direction * ray.begins_km;
   return ray;

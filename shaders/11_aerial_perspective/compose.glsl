@@ -38,33 +38,33 @@ RayLight froxel_light(vec2 place, float t_km) {
 
 // The same without them: from above the air and beyond the last slice there are none.
 RayLight air_before(Atmosphere air, vec2 place, vec3 view, float t_km) {
-  const bool above = camera.right.w >= air.shape.y;
+  const bool above = camera.altitude_km >= air.top_km;
 #if FROXELS
   if (!above && t_km <= east.w) return froxel_light(place, t_km);
 #endif
-  const ClippedRay ray = clipped_ray(view, camera.right.w);
+  const ClippedRay ray = clipped_ray(view, camera.altitude_km);
   if (!ray.air.hits_air) return RayLight(vec3(0.0), vec3(1.0));
-  RayLight light = march_to(method_air(air, MS_METHOD), ray.air, scattering_along(air, view, camera.sun.xyz), max(t_km - ray.begins_km, 0.0), MARCH_SLICES, SAMPLES, above ? 1.0 : POWER);
-  light.radiance *= air.sun.xyz;
+  RayLight light = march_to(method_air(air, MS_METHOD), ray.air, scattering_along(air, view, camera.sun), max(t_km - ray.begins_km, 0.0), MARCH_SLICES, SAMPLES, above ? 1.0 : POWER);
+  light.radiance *= air.solar_irradiance;
   return light;
 }
 
 // [compose]
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, camera.size.xy))) return;
+  if (any(greaterThanEqual(pixel, camera.size))) return;
   const Atmosphere air = atmosphere;
   const vec3 view = camera_direction(camera, pixel);
-  const vec3 direction = to_global(view), sun = to_global(camera.sun.xyz);
+  const vec3 direction = to_global(view), sun = to_global(camera.sun);
 
   const float depth = texelFetch(depth_map, pixel, 0).r;
-  float t_km = depth > 0.0 ? distance_from_depth(depth, NEAR_KM, dot(view, normalize(camera.forward.xyz))) : 1.0e9;
+  float t_km = depth > 0.0 ? distance_from_depth(depth, NEAR_KM, dot(view, normalize(camera.forward))) : 1.0e9;
   bool seen = depth > 0.0;
   float paint = -1.0;
   vec3 normal = vec3(0.0);
   if (HAS_SIGNS) {
     for (int k = 0; k < kSigns; ++k) {
-      const SignHit hit = meet_sign(k, air.shape.x, north.w, position.xyz, direction);
+      const SignHit hit = meet_sign(k, air.ground_radius_km, north.w, position.xyz, direction);
       if (hit.t_km < 0.0 || hit.t_km >= t_km) continue;
       t_km = hit.t_km, paint = hit.paint, normal = hit.normal, seen = true;
     }
@@ -75,13 +75,13 @@ void main() {
   }
 
   const vec3 point = position.xyz + direction * t_km;
-  const vec2 place = place_below(air.shape.x, point);
-  const vec3 up = up_at(air.shape.x, place);
-  const float altitude = max(altitude_of(air.shape.x, point), 0.0);
+  const vec2 place = place_below(air.ground_radius_km, point);
+  const vec3 up = up_at(air.ground_radius_km, place);
+  const float altitude = max(altitude_of(air.ground_radius_km, point), 0.0);
   vec3 albedo = vec3(paint);
   if (paint < 0.0) {
     const vec2 uv = map_uv(place, position.w);
-    const Ground ground = ground_at(textureLod(slope_map, uv, 0.0).rg, textureLod(cover_map, uv, 0.0), air.ground.rgb, place, up, t_km / float(camera.size.y));
+    const Ground ground = ground_at(textureLod(slope_map, uv, 0.0).rg, textureLod(cover_map, uv, 0.0), air.ground_albedo, place, up, t_km / float(camera.size.y));
     albedo = ground.albedo, normal = ground.normal;
   } else if (dot(normal, direction) > 0.0) {
     normal = -normal;
@@ -91,9 +91,9 @@ void main() {
   const float seen_sun = HAS_SHADOWS ? sun_over(place, altitude) : 1.0;
   const vec3 beam = sun_through_air(method.air, altitude, mu_sun) * seen_sun;
   const vec3 from_sky = HIGHER_ORDERS ? sky_irradiance(air, altitude, mu_sun) : vec3(0.0);
-  const vec3 lit = surface_light(albedo, air.ground.rgb, normal, up, sun, beam, from_sky) * air.sun.rgb;
+  const vec3 lit = surface_light(albedo, air.ground_albedo, normal, up, sun, beam, from_sky) * air.solar_irradiance;
 
-  const RayLight before = air_before(air, (vec2(pixel) + 0.5) / vec2(camera.size.xy), view, t_km);
+  const RayLight before = air_before(air, (vec2(pixel) + 0.5) / vec2(camera.size), view, t_km);
   imageStore(target, pixel, vec4(before.radiance + before.transmittance * lit, 1.0));
 }
 // [/compose]

@@ -36,9 +36,9 @@ void main() {
   const MethodAir method = method_air(air, MS_METHOD);
   // The outer texels lie on the picture's edges: all of the picture is between directions, nothing is extrapolated.
   const vec2 place = vec2(texel) / vec2(count - 1) * 2.0 - 1.0;
-  const vec3 view = normalize(camera.forward.xyz + camera.right.xyz * place.x - camera.up.xyz * place.y);
-  const ClippedRay in_air = clipped_ray(view, camera.right.w);
-  const ScatteringTowardsEye scattering = scattering_along(air, view, camera.sun.xyz);
+  const vec3 view = normalize(camera.forward + camera.right * place.x - camera.up * place.y);
+  const ClippedRay in_air = clipped_ray(view, camera.altitude_km);
+  const ScatteringTowardsEye scattering = scattering_along(air, view, camera.sun);
   Veil before = no_veil();  // all slices of the rounds before
   for (int round = 0; round * THREADS < SLICES; ++round) {
     const int k = min(round * THREADS + part, SLICES - 1);
@@ -46,7 +46,7 @@ void main() {
     const float t_a = slice_end(float(k), float(SLICES), east.w, POWER), t_b = slice_end(float(k + 1), float(SLICES), east.w, POWER);
     if (THREADS == 1) {
       before = behind(method, in_air.air, scattering, before, t_a, t_b, SAMPLES);
-      if (own) store(ivec3(texel, k), before, t_b, air.sun.xyz);
+      if (own) store(ivec3(texel, k), before, t_b, air.solar_irradiance);
       continue;
     }
     Veil slice = no_veil();
@@ -63,7 +63,7 @@ void main() {
       before.radiance += shared_light[round % 2][i][ray];
       before.depth += shared_depth[round % 2][i][ray];
     }
-    if (own) store(ivec3(texel, k), veil, t_b, air.sun.xyz);
+    if (own) store(ivec3(texel, k), veil, t_b, air.solar_irradiance);
   }
 }
 // [/froxels]

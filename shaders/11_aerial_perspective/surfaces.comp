@@ -29,14 +29,14 @@ layout(push_constant) uniform Push {
 // [surfaces]
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, camera.size.xy))) return;
+  if (any(greaterThanEqual(pixel, camera.size))) return;
   const vec3 view = camera_direction(camera, pixel);
   const vec3 above = cross(east.xyz, north.xyz);
   const vec3 direction = east.xyz * view.x + north.xyz * view.y + above * view.z;
 
   const float depth = texelFetch(depth_map, pixel, 0).r;
   bool seen = depth > 0.0;
-  float t_km = seen ? distance_from_depth(depth, NEAR_KM, dot(view, normalize(camera.forward.xyz))) : 1.0e9;
+  float t_km = seen ? distance_from_depth(depth, NEAR_KM, dot(view, normalize(camera.forward))) : 1.0e9;
   float paint = -1.0;
   vec3 normal = vec3(0.0);
   if (HAS_SIGNS) {

@@ -1,6 +1,5 @@
 // Chapter 01's picture against integer arithmetic on the processor: every bit of every pixel.
 #include <catch2/catch.hpp>
-
 #include <cstring>
 
 #include "chapters/01_first_light/first_light.hpp"
@@ -47,8 +46,9 @@ TEST_CASE("first light is exact in every pixel, at sizes that fit no workgroup")
         const size_t i = size_t{y} * size.width + x;
         for (int c = 0; c < 3; ++c) {
           const int height = static_cast<int>(size.height), row = static_cast<int>(y);
-          const int level = blend(blend(night_top[c], night_bottom[c], row, height), blend(dawn_top[c], dawn_bottom[c], row, height),
-                                  static_cast<int>(x), static_cast<int>(size.width));
+          const int level =
+              blend(blend(night_top[c], night_bottom[c], row, height), blend(dawn_top[c], dawn_bottom[c], row, height),
+                    static_cast<int>(x), static_cast<int>(size.width));
           const float value = static_cast<float>(level) * (1.0f / 255.0f);
           if (drawn.linear.pixels[i][c] != value || drawn.shown.rgba[4 * i + static_cast<size_t>(c)] != level) ++wrong;
         }
@@ -63,9 +63,11 @@ TEST_CASE("first light is exact in every pixel, at sizes that fit no workgroup")
 TEST_CASE("resources are accounted while they live, and only then") {
   const uint64_t before = test::device().allocated_bytes();
   {
-    const gpu::Buffer buffer = gpu::create_buffer(test::device(), "ledger", 1000, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::device);
+    const gpu::Buffer buffer =
+        gpu::create_buffer(test::device(), "ledger", 1000, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::device);
     CHECK(test::device().allocated_bytes() >= before + 1000);
-    gpu::Buffer moved = gpu::create_buffer(test::device(), "other", 10, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::upload);
+    gpu::Buffer moved =
+        gpu::create_buffer(test::device(), "other", 10, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::upload);
     moved = gpu::create_buffer(test::device(), "third", 20, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::upload);
     CHECK(moved.as<float>().size() == 5);
   }
@@ -85,7 +87,8 @@ TEST_CASE("an image no device can hold is refused in one line") {
 }
 
 TEST_CASE("device choice says what was wanted and what was offered") {
-  const auto message = [](const std::vector<gpu::Candidate>& candidates, const std::string& wanted, Exit& code) -> std::string {
+  const auto message = [](const std::vector<gpu::Candidate>& candidates, const std::string& wanted,
+                          Exit& code) -> std::string {
     try {
       gpu::choose_device(candidates, wanted);
     } catch (const Error& error) {

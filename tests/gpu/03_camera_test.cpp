@@ -55,8 +55,8 @@ TEST_CASE("camera: altitude to a millimetre, at 0.5 m and at the Moon, anywhere 
     CHECK(worst_mm < 1e-2);  // doubles at 6360 km know 1e-6 mm; a few squares later
   }
   const CameraRays rays = app::camera_rays(pose_around(0.0005, 1.0, 2.0), Scene{}, 0.0, {960, 540}, 1, 0);
-  CHECK(rays.right.w == Approx(0.0005).epsilon(1e-5));
-  CHECK(rays.up.w == Approx(0.5).epsilon(1e-5));
+  CHECK(rays.altitude_km == Approx(0.0005).epsilon(1e-5));
+  CHECK(rays.altitude_m == Approx(0.5).epsilon(1e-5));
 }
 
 TEST_CASE("camera: no roll, whatever one does") {

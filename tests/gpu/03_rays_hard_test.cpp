@@ -245,7 +245,7 @@ TEST_CASE("hard: directions through a 600x telescope") {
     const Scene scene;
     const CameraRays rays = app::camera_rays(pose, scene, 0.0, {width, height}, 1, 0);
     const int px = int(random.next() % width), py = int(random.next() % height);
-    for (const glm::vec4& v : {rays.right, rays.up, rays.forward})
+    for (const glm::vec3& v : {rays.right, rays.up, rays.forward})
       for (int k = 0; k < 3; ++k) inputs.push_back(v[k]);
     for (const int v : {width, height, px, py}) inputs.push_back(float(v));
     const glm::dvec3 forward = app::direction_from(90.0 - pose.elevation_deg, pose.azimuth_deg),

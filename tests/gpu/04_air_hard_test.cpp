@@ -1,11 +1,9 @@
 // Chapter 04's hard cases: each shows the naive form failing by the figure stated, and the one that holds.
-#include <catch2/catch.hpp>
-
-#include <glm/geometric.hpp>
-
 #include <algorithm>
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
+#include <glm/geometric.hpp>
 
 #include "chapters/04_air/air.hpp"
 #include "chapters/04_air/phase.hpp"
@@ -29,8 +27,9 @@ PhaseValues phase_at(float one_minus_nu, float g) {
 }
 
 // Input of tests/04_constant_sky.comp: 35 floats.
-void add_ray(std::vector<float>& in, const interop::Atmosphere& air, double altitude_km, const glm::dvec3& view, const glm::dvec3& sun) {
-  const float* a = &air.rayleigh.x;
+void add_ray(std::vector<float>& in, const interop::Atmosphere& air, double altitude_km, const glm::dvec3& view,
+             const glm::dvec3& sun) {
+  const float* a = &air.rayleigh_scattering.x;
   in.insert(in.end(), a, a + 28);
   for (const double v : {altitude_km, view.x, view.y, view.z, sun.x, sun.y, sun.z}) in.push_back(static_cast<float>(v));
 }
@@ -54,8 +53,8 @@ std::string message_of(const std::filesystem::path& file) {
 }  // namespace
 
 TEST_CASE("hard: Henyey-Greenstein straight ahead with g near 1") {
-  // 1 + g^2 - 2 g nu in float32 is off by 1.4e-3 at g = 0.995, by 7 % at 0.999, and 0 at 0.9999; its power -3/2, the phase
-  // function, by half as much again. Against double at the same float g.
+  // 1 + g^2 - 2 g nu in float32 is off by 1.4e-3 at g = 0.995, by 7 % at 0.999, and 0 at 0.9999; its power -3/2, the
+  // phase function, by half as much again. Against double at the same float g.
   const auto errors = [](float g) {
     const PhaseValues v = phase_at(0.0f, g);
     const double truth = phase::henyey_greenstein(0.0, g);
@@ -65,7 +64,8 @@ TEST_CASE("hard: Henyey-Greenstein straight ahead with g near 1") {
   const auto [naive_999, good_999] = errors(0.999f);
   const auto [naive_9999, good_9999] = errors(0.9999f);
   const auto [naive_last, good_last] = errors(0.99999994f);
-  WARN(fmt::format("naive {:.2e} {:.2e} {:.2e}; held {:.1e} {:.1e} {:.1e} {:.1e}", naive_995, naive_999, naive_9999, good_995, good_999, good_9999, good_last));
+  WARN(fmt::format("naive {:.2e} {:.2e} {:.2e}; held {:.1e} {:.1e} {:.1e} {:.1e}", naive_995, naive_999, naive_9999,
+                   good_995, good_999, good_9999, good_last));
   CHECK(naive_995 > 1e-3);
   CHECK(naive_999 > 0.05);
   CHECK(!(naive_9999 < 0.5));  // 0 below, so infinite
@@ -80,7 +80,8 @@ TEST_CASE("hard: the cosine of a small angle between two unit vectors") {
   for (int i = 0; i < 100'000; ++i) {
     const glm::dvec3 a = app::direction_from(random.uniform(0.0, 180.0), random.uniform(0.0, 360.0));
     const glm::dvec3 other = app::direction_from(random.uniform(0.0, 180.0), random.uniform(0.0, 360.0));
-    const glm::dvec3 b = glm::normalize(a + 1e-3 * glm::cross(a, other) / std::max(glm::length(glm::cross(a, other)), 1e-3));
+    const glm::dvec3 b =
+        glm::normalize(a + 1e-3 * glm::cross(a, other) / std::max(glm::length(glm::cross(a, other)), 1e-3));
     const glm::vec3 fa(a), fb(b);
     for (const float v : {fa.x, fa.y, fa.z, fb.x, fb.y, fb.z}) in.push_back(v);
     const glm::dvec3 d = glm::dvec3(fa) - glm::dvec3(fb);  // the angle between the vectors the device gets
@@ -101,7 +102,8 @@ TEST_CASE("hard: g = 1 and g = -1 exactly") {
   for (const float g : {1.0f, -1.0f})
     for (const float x : {0.0f, 1e-7f, 1.0f, 2.0f}) {
       const PhaseValues v = phase_at(x, g);
-      for (const float p : {v.henyey_greenstein, v.cornette_shanks, v.draine, v.double_hg}) CHECK(p == 0.0f);  // the limit, but for the lobe's own direction
+      for (const float p : {v.henyey_greenstein, v.cornette_shanks, v.draine, v.double_hg})
+        CHECK(p == 0.0f);  // the limit, but for the lobe's own direction
     }
   CHECK(!std::isfinite(phase_at(0.0f, 1.0f).naive));
 }
@@ -129,7 +131,8 @@ TEST_CASE("hard: looking into the sun, both optical depths equal") {
   for (size_t i = 0; i < gaps.size(); ++i) {
     const double a = in[2 * i], b = in[2 * i + 1];
     const double truth = b == a ? std::exp(-a) : -std::exp(-a) * std::expm1(a - b) / (b - a);
-    figures += fmt::format(" {:g}: naive {:.1e} held {:.1e};", gaps[i], out[2 * i + 1] / truth - 1.0, out[2 * i] / truth - 1.0);
+    figures += fmt::format(" {:g}: naive {:.1e} held {:.1e};", gaps[i], out[2 * i + 1] / truth - 1.0,
+                           out[2 * i] / truth - 1.0);
     CHECK(std::abs(out[2 * i] / truth - 1.0) < 2e-6);
   }
   WARN("relative error by b - a:" + figures);
@@ -140,11 +143,13 @@ TEST_CASE("hard: looking into the sun, both optical depths equal") {
 TEST_CASE("hard: mean transmittance from vacuum to opaque, a million pairs and every edge") {
   std::vector<float> in;
   for (const float a : {0.0f, 1e-38f, 1e-7f, 0.05f, 1.0f, 80.0f, 90.0f, 1e4f, 1e30f})
-    for (const float b : {0.0f, 1e-38f, 1e-7f, 0.05f, 1.0f, 80.0f, 90.0f, 1e4f, 1e30f, 2e30f}) in.insert(in.end(), {a, b});
+    for (const float b : {0.0f, 1e-38f, 1e-7f, 0.05f, 1.0f, 80.0f, 90.0f, 1e4f, 1e30f, 2e30f})
+      in.insert(in.end(), {a, b});
   const size_t edges = in.size() / 2;
   test::Random random(11);
   for (int i = 0; i < 1'000'000; ++i) {
-    const double a = random.log_uniform(1e-6, 60.0), b = random.next() % 2 == 0 ? random.log_uniform(1e-6, 1e4) : a * random.uniform(0.9, 1.1);
+    const double a = random.log_uniform(1e-6, 60.0),
+                 b = random.next() % 2 == 0 ? random.log_uniform(1e-6, 1e4) : a * random.uniform(0.9, 1.1);
     in.insert(in.end(), {static_cast<float>(a), static_cast<float>(b)});
   }
   const std::vector<float> out = test::evaluate("tests/04_mean_transmittance.comp", in, 2, 2);
@@ -155,9 +160,12 @@ TEST_CASE("hard: mean transmittance from vacuum to opaque, a million pairs and e
     bad += !(out[2 * i] >= 0.0f && out[2 * i] <= 1.0f);
     naive_bad += !std::isfinite(out[2 * i + 1]);
     const double truth = std::exp(-low) * (gap == 0.0 ? 1.0 : -std::expm1(-gap) / gap);
-    if (i >= edges) worst = std::max(worst, std::abs(out[2 * i] / truth - 1.0) / (1.0 + low));  // exp(-x) in float: a rounding of x is x ulp
+    if (i >= edges)
+      worst = std::max(worst,
+                       std::abs(out[2 * i] / truth - 1.0) / (1.0 + low));  // exp(-x) in float: a rounding of x is x ulp
   }
-  WARN(fmt::format("held: {:.1e} relative per unit of depth; naive not finite in {} of {}", worst, naive_bad, in.size() / 2));
+  WARN(fmt::format("held: {:.1e} relative per unit of depth; naive not finite in {} of {}", worst, naive_bad,
+                   in.size() / 2));
   CHECK(bad == 0);
   CHECK(worst < 6e-6);  // where the series ends, at 0.05, 1 - exp(-x) has lost a factor 20 of exp's 1e-7
   CHECK(naive_bad > 0);
@@ -166,14 +174,16 @@ TEST_CASE("hard: mean transmittance from vacuum to opaque, a million pairs and e
 TEST_CASE("hard: absurd and absent coefficients, every camera, every sun") {
   std::vector<float> in;
   const std::vector<double> scales{0.0, 1e-30, 1e-9, 1.0, 100.0, 1e6, 1e15};
-  const std::vector<double> altitudes{0.0, 0.0005, 2.0, 7.9999995, 8.0, 8.0000005, 60.0, 100.0, 400.0, 36000.0, 378000.0};
+  const std::vector<double> altitudes{0.0,  0.0005, 2.0,   7.9999995, 8.0,     8.0000005,
+                                      60.0, 100.0,  400.0, 36000.0,   378000.0};
   test::Random random(3);
   const auto ray = [&](double scale, double altitude, double view_zenith, double sun_zenith, double azimuth) {
     interop::Atmosphere air = earth_air();
-    air.rayleigh = glm::vec4(glm::vec3(air.rayleigh) * float(scale), air.rayleigh.w);
-    air.mie_scattering = glm::vec4(glm::vec3(air.mie_scattering) * float(scale), air.mie_scattering.w);
-    air.mie_extinction = glm::vec4(glm::vec3(air.mie_extinction) * float(scale), random.next() % 8 == 0 ? 0.999f : 0.8f);
-    air.ozone = glm::vec4(glm::vec3(air.ozone) * float(scale), air.ozone.w);
+    air.rayleigh_scattering *= float(scale);
+    air.mie_scattering *= float(scale);
+    air.mie_extinction *= float(scale);
+    air.mie_g = random.next() % 8 == 0 ? 0.999f : 0.8f;
+    air.ozone_absorption *= float(scale);
     add_ray(in, air, altitude, app::direction_from(view_zenith, azimuth), app::direction_from(sun_zenith, 0.0));
   };
   for (const double scale : scales)
@@ -183,8 +193,9 @@ TEST_CASE("hard: absurd and absent coefficients, every camera, every sun") {
           for (const double azimuth : {0.0, 90.0, 180.0}) ray(scale, altitude, view, sun, azimuth);
   const size_t edges = in.size() / 35;
   for (int i = 0; i < 1'000'000; ++i)
-    ray(random.next() % 2 == 0 ? 1.0 : random.log_uniform(1e-6, 1e6), random.next() % 2 == 0 ? random.log_uniform(1e-4, 1e5) : random.uniform(0.0, 10.0),
-        random.uniform(0.0, 180.0), random.uniform(0.0, 180.0), random.uniform(0.0, 360.0));
+    ray(random.next() % 2 == 0 ? 1.0 : random.log_uniform(1e-6, 1e6),
+        random.next() % 2 == 0 ? random.log_uniform(1e-4, 1e5) : random.uniform(0.0, 10.0), random.uniform(0.0, 180.0),
+        random.uniform(0.0, 180.0), random.uniform(0.0, 360.0));
   const std::vector<float> out = test::evaluate("tests/04_constant_sky.comp", in, 35, 13);
   size_t bad = 0, vacuum_bad = 0, unlit_miss = 0;
   for (size_t i = 0; i < out.size() / 13; ++i) {
@@ -192,9 +203,11 @@ TEST_CASE("hard: absurd and absent coefficients, every camera, every sun") {
     for (int c = 0; c < 3; ++c) {
       bad += !(std::isfinite(o[c]) && o[c] >= 0.0f);
       bad += !(o[3 + c] >= 0.0f && o[3 + c] <= 1.0f);
-      bad += !(std::isfinite(o[7 + c]) && o[7 + c] >= 0.0f && o[7 + c] <= 1.0f) + !(std::isfinite(o[10 + c]) && o[10 + c] >= 0.0f);
+      bad += !(std::isfinite(o[7 + c]) && o[7 + c] >= 0.0f && o[7 + c] <= 1.0f) +
+             !(std::isfinite(o[10 + c]) && o[10 + c] >= 0.0f);
       const bool vacuum = in[35 * i] == 0.0f && in[35 * i + 8] == 0.0f;
-      vacuum_bad += vacuum && (o[3 + c] != 1.0f || (o[6] == 0.0f && o[c] != 0.0f));  // sigma = 0: nothing seen, nothing lost
+      vacuum_bad +=
+          vacuum && (o[3 + c] != 1.0f || (o[6] == 0.0f && o[c] != 0.0f));  // sigma = 0: nothing seen, nothing lost
       unlit_miss += o[3 + c] == 1.0f && o[6] == 0.0f && in[35 * i] > 1e-5f && o[c] != 0.0f && in[35 * i + 28] > 9.0f;
     }
   }
@@ -218,10 +231,12 @@ TEST_CASE("hard: OBJ files that are missing, garbage, cut off or absurd give one
   CHECK_THAT(message_of(directory / "none.obj"), Contains("none.obj"));
   CHECK_THAT(message_of(directory.path), Contains(directory.path.string()));
   CHECK_THAT(said(""), Contains("no face"));
-  CHECK_THAT(said(std::string(5000, '\0') + "\x7f" "ELF \xff\xfe\n"), Contains("no face"));
+  CHECK_THAT(said(std::string(5000, '\0') + "\x7f"
+                                            "ELF \xff\xfe\n"),
+             Contains("no face"));
   CHECK_THAT(said(corners), Contains("no face"));
-  CHECK_THAT(said(good.substr(0, good.find("\nf "))), Contains("no face"));                    // cut before the faces
-  CHECK_THAT(said(good.substr(0, good.find("\nf ") + 900)), Contains("belongs to no face"));    // cut among the faces
+  CHECK_THAT(said(good.substr(0, good.find("\nf "))), Contains("no face"));                   // cut before the faces
+  CHECK_THAT(said(good.substr(0, good.find("\nf ") + 900)), Contains("belongs to no face"));  // cut among the faces
   CHECK_THAT(said(corners + "f 1 2 4\n"), Contains("names vertex 4"));
   CHECK_THAT(said(corners + "f 1 2 -9\n"), Contains("sphere.obj"));
   CHECK(!said(corners + "f 0 1 2\n").empty());
@@ -279,10 +294,13 @@ TEST_CASE("04 sky sphere: the shipped file is an icosahedron split twice, and sp
   for (int level = 0; level < 3; ++level) {
     double solid_angle = 0.0;  // van Oosterom and Strackee: tan(omega/2) = a.(b x c) / (1 + a.b + b.c + c.a)
     for (size_t i = 0; i < sphere.indices.size(); i += 3) {
-      const glm::dvec3 a(sphere.directions[sphere.indices[i]]), b(sphere.directions[sphere.indices[i + 1]]), c(sphere.directions[sphere.indices[i + 2]]);
-      solid_angle += 2.0 * std::atan2(glm::dot(a, glm::cross(b, c)), 1.0 + glm::dot(a, b) + glm::dot(b, c) + glm::dot(c, a));
+      const glm::dvec3 a(sphere.directions[sphere.indices[i]]), b(sphere.directions[sphere.indices[i + 1]]),
+          c(sphere.directions[sphere.indices[i + 2]]);
+      solid_angle +=
+          2.0 * std::atan2(glm::dot(a, glm::cross(b, c)), 1.0 + glm::dot(a, b) + glm::dot(b, c) + glm::dot(c, a));
     }
-    CHECK(solid_angle == Approx(4.0 * std::numbers::pi).epsilon(1e-5));  // covered once, all triangles the same way round
+    CHECK(solid_angle ==
+          Approx(4.0 * std::numbers::pi).epsilon(1e-5));  // covered once, all triangles the same way round
     const size_t vertices = sphere.directions.size(), triangles = sphere.indices.size() / 3;
     sphere = subdivide(sphere);
     CHECK(sphere.indices.size() / 3 == 4 * triangles);

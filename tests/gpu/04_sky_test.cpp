@@ -1,11 +1,9 @@
-// Chapter 04's program: the drawn sphere shows the sky along every pixel's ray, vertex colours converge to it, and what is
-// not asked for is not allocated.
-#include <catch2/catch.hpp>
-
-#include <glm/geometric.hpp>
-
+// Chapter 04's program: the drawn sphere shows the sky along every pixel's ray, vertex colours converge to it, and what
+// is not asked for is not allocated.
 #include <algorithm>
+#include <catch2/catch.hpp>
 #include <cmath>
+#include <glm/geometric.hpp>
 
 #include "chapters/04_air/constant_sky.hpp"
 #include "common/app/renderer.hpp"
@@ -22,11 +20,14 @@ struct Drawing {
   Scene scene;
   Settings settings{{{.name = "sky.method", .initial = 1, .choices = {"per_vertex", "per_pixel"}},
                      {.name = "sphere.detail", .maximum = 4, .initial = 2, .integer = true},
-                     {.name = "phase.detail", .initial = 3, .choices = {"isotropic", "rayleigh", "henyey_greenstein", "scene", "anisotropic"}}}};
+                     {.name = "phase.detail",
+                      .initial = 3,
+                      .choices = {"isotropic", "rayleigh", "henyey_greenstein", "scene", "anisotropic"}}}};
   std::string inject;
   app::Chapter chapter;
 
-  explicit Drawing(const char* name) : scene(load_scene(name, std::string(WELKIN_SOURCE_DIRECTORY) + "/chapters/scenes")) {}
+  explicit Drawing(const char* name)
+      : scene(load_scene(name, std::string(WELKIN_SOURCE_DIRECTORY) + "/chapters/scenes")) {}
   Image draw(const char* view = "") {
     const app::Context context{test::device(), scene, settings, inject};
     ConstantSkyProgram program(context);
@@ -49,21 +50,26 @@ double largest_difference(const Image& a, const Image& b) {
   return worst / brightest;
 }
 
-// Share of the pixels that are not the sky within `box` pixels, each way, of the rays through (x + 1/2 + beside, y + 1/2 + beside).
+// Share of the pixels that are not the sky within `box` pixels, each way, of the rays through (x + 1/2 + beside, y +
+// 1/2 + beside).
 double off(const Image& picture, const Scene& scene, const CameraRays& camera, double beside, double box) {
   const interop::Atmosphere air = make_atmosphere(scene);
-  const float* numbers = &air.rayleigh.x;
+  const float* numbers = &air.rayleigh_scattering.x;
   std::vector<float> in;
   for (uint32_t y = 0; y < kSize.height; ++y)
     for (uint32_t x = 0; x < kSize.width; ++x)
       for (int ray = 0; ray < 9; ++ray) {
         const double u = 2.0 * (x + 0.5 + beside + (ray % 3 - 1) * box) / kSize.width - 1.0;
         const double v = 2.0 * (y + 0.5 + beside + (ray / 3 - 1) * box) / kSize.height - 1.0;
-        const glm::dvec3 view = glm::normalize(glm::dvec3(camera.forward) + u * glm::dvec3(camera.right) - v * glm::dvec3(camera.up));
+        const glm::dvec3 view =
+            glm::normalize(glm::dvec3(camera.forward) + u * glm::dvec3(camera.right) - v * glm::dvec3(camera.up));
         in.insert(in.end(), numbers, numbers + 28);
-        for (const double value : {double(camera.right.w), view.x, view.y, view.z, double(camera.sun.x), double(camera.sun.y), double(camera.sun.z)}) in.push_back(static_cast<float>(value));
+        for (const double value : {double(camera.altitude_km), view.x, view.y, view.z, double(camera.sun.x),
+                                   double(camera.sun.y), double(camera.sun.z)})
+          in.push_back(static_cast<float>(value));
       }
-  const std::vector<float> out = test::evaluate("tests/04_constant_sky.comp", in, 35, 13, specialization(air_variant(scene)));
+  const std::vector<float> out =
+      test::evaluate("tests/04_constant_sky.comp", in, 35, 13, specialization(air_variant(scene)));
   size_t count = 0;
   for (size_t i = 0; i < picture.pixels.size(); ++i) {
     bool differs = false;
@@ -73,7 +79,8 @@ double off(const Image& picture, const Scene& scene, const CameraRays& camera, d
         low = std::min(low, out[13 * (9 * i + ray) + c]);
         high = std::max(high, out[13 * (9 * i + ray) + c]);
       }
-      differs |= !(picture.pixels[i][c] >= low - 2e-3f * low - 1e-7f && picture.pixels[i][c] <= high + 2e-3f * high + 1e-7f);
+      differs |=
+          !(picture.pixels[i][c] >= low - 2e-3f * low - 1e-7f && picture.pixels[i][c] <= high + 2e-3f * high + 1e-7f);
     }
     count += differs;
   }
@@ -83,15 +90,16 @@ double off(const Image& picture, const Scene& scene, const CameraRays& camera, d
 }  // namespace
 
 // A rasterizer may move each corner of a triangle to its grid of 2^-subPixelPrecisionBits pixels before it interpolates
-// (lavapipe interpolates from the corners as they were, NVIDIA's driver from the moved ones). Between corners moved by at
-// most a cell the ray is off by at most a cell, here 1/256 pixel. Directions in float add a few 2^-24 of a component
-// each: together below 1e-6 rad. Within that box a pixel may show any of the sky's values: at the shell's edge and at the
-// ground's they jump. Nine rays of the box, its corners among them, bound them; 2e-3 is for their bending between these.
-// (Corners rounded to that grid by the vertex shader leave 100 pixels of orbit/limb beside the sky of their one ray on
-// lavapipe, too: as many as on NVIDIA's driver. A grid of 1/16 pixel fails here in every view.)
+// (lavapipe interpolates from the corners as they were, NVIDIA's driver from the moved ones). Between corners moved by
+// at most a cell the ray is off by at most a cell, here 1/256 pixel. Directions in float add a few 2^-24 of a component
+// each: together below 1e-6 rad. Within that box a pixel may show any of the sky's values: at the shell's edge and at
+// the ground's they jump. Nine rays of the box, its corners among them, bound them; 2e-3 is for their bending between
+// these. (Corners rounded to that grid by the vertex shader leave 100 pixels of orbit/limb beside the sky of their one
+// ray on lavapipe, too: as many as on NVIDIA's driver. A grid of 1/16 pixel fails here in every view.)
 TEST_CASE("04 sky: a pixel of the drawn sphere is the sky along the pixel's ray") {
   const double cell = std::ldexp(1.0, -static_cast<int>(test::device().limits().subPixelPrecisionBits));  // pixels
-  for (const auto& [name, view] : {std::pair{"noon", "horizon"}, {"noon", "zenith"}, {"sunset", "antisun"}, {"orbit", "limb"}}) {
+  for (const auto& [name, view] :
+       {std::pair{"noon", "horizon"}, {"noon", "zenith"}, {"sunset", "antisun"}, {"orbit", "limb"}}) {
     Drawing drawing(name);
     drawing.scene.sun.disc = false;
     const Image picture = drawing.draw(view);
@@ -123,7 +131,9 @@ TEST_CASE("04 sky: vertex colours converge to pixel colours as the triangles shr
 
 TEST_CASE("04 sky: vertex colours are allocated only if asked for") {
   Drawing drawing("noon");
-  const auto has = [](const std::vector<std::string>& names, const char* name) { return std::find(names.begin(), names.end(), name) != names.end(); };
+  const auto has = [](const std::vector<std::string>& names, const char* name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
   drawing.draw();
   CHECK(!has(drawing.allocations, "vertex colours"));
   drawing.settings.set("sky.method", "per_vertex");
@@ -155,7 +165,11 @@ TEST_CASE("04 sky: --probe gives the sky without the disc, and nothing where not
   Drawing drawing("earth");
   const app::Context context{test::device(), drawing.scene, drawing.settings, drawing.inject};
   ConstantSkyProgram program(context);
-  const std::vector<app::ProbeRay> rays{{0.0005, 30.0, 30.0, 0.0}, {0.0005, 30.0, 30.0, 180.0}, {400.0, 0.0, 30.0, 0.0}, {36000.0, 90.0, 30.0, 0.0}, {0.0, 180.0, 0.0, 0.0}};
+  const std::vector<app::ProbeRay> rays{{0.0005, 30.0, 30.0, 0.0},
+                                        {0.0005, 30.0, 30.0, 180.0},
+                                        {400.0, 0.0, 30.0, 0.0},
+                                        {36000.0, 90.0, 30.0, 0.0},
+                                        {0.0, 180.0, 0.0, 0.0}};
   const std::vector<app::ProbeResult> results = program.probe(rays);
   REQUIRE(results.size() == rays.size());
   CHECK(results[0].radiance.z > results[1].radiance.z);  // towards the sun is brighter
@@ -164,6 +178,6 @@ TEST_CASE("04 sky: --probe gives the sky without the disc, and nothing where not
     CHECK(results[miss].radiance == glm::dvec3(0.0));
     CHECK(results[miss].transmittance == glm::dvec3(1.0));
   }
-  CHECK(results[4].transmittance == glm::dvec3(1.0));    // the ground at the lens: 0.3/pi of sunlight
+  CHECK(results[4].transmittance == glm::dvec3(1.0));  // the ground at the lens: 0.3/pi of sunlight
   CHECK(results[4].radiance.x == Approx(0.3 / 3.14159265 * std::exp(-0.0615)).epsilon(2e-3));
 }

@@ -1,8 +1,7 @@
-// The march against a bare loop of the same arithmetic (shaders/05_yardstick.comp), in turns on the same device, best of
-// several: how much being readable and adjustable costs. And that a frame makes nothing it did not have.
-#include <catch2/catch.hpp>
-
+// The march against a bare loop of the same arithmetic (shaders/05_yardstick.comp), in turns on the same device, best
+// of several: how much being readable and adjustable costs. And that a frame makes nothing it did not have.
 #include <algorithm>
+#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <new>
 
@@ -41,7 +40,8 @@ struct Yardstick : app::Program {
         set(gpu::create_descriptor_set(device, pipeline.set_layout, pipeline.bindings)) {}
   void set_target(const gpu::Image& target) override { gpu::write_storage_image(device, set, 0, target); }
   void draw(const app::Frame& frame) override {
-    gpu::image_barrier(frame.commands, frame.target.handle, {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT}, gpu::kComputeWrite);
+    gpu::image_barrier(frame.commands, frame.target.handle, {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT},
+                       gpu::kComputeWrite);
     const gpu::TimedPass pass(frame.timer, frame.commands, "yardstick");
     gpu::dispatch_over(frame.commands, pipeline, set, frame.camera, frame.target.size);
   }
@@ -71,7 +71,8 @@ TEST_CASE("speed: the march stays within 1.3 of the bare loop") {
   SingleScattering march(world.context);
   Yardstick bare(world.context);
   constexpr VkExtent2D size{640, 360};
-  app::Renderer march_renderer(world.context, world.chapter, march, size), bare_renderer(world.context, world.chapter, bare, size);
+  app::Renderer march_renderer(world.context, world.chapter, march, size),
+      bare_renderer(world.context, world.chapter, bare, size);
   double best_march = 1e30, best_bare = 1e30;
   for (uint32_t i = 0; i < 9; ++i) {  // the first of each compiles
     march_renderer.draw(world.pose, 0.0, 1, i);
@@ -83,10 +84,11 @@ TEST_CASE("speed: the march stays within 1.3 of the bare loop") {
   const Image ours = march_renderer.picture(), theirs = bare_renderer.picture();
   double worst = 0.0;
   for (size_t i = 0; i < ours.pixels.size(); ++i)
-    for (int c = 0; c < 3; ++c) worst = std::max(worst, double(std::abs(ours.pixels[i][c] - theirs.pixels[i][c]) / theirs.pixels[i][c]));
+    for (int c = 0; c < 3; ++c)
+      worst = std::max(worst, double(std::abs(ours.pixels[i][c] - theirs.pixels[i][c]) / theirs.pixels[i][c]));
   CHECK(worst < 2e-3);
-  WARN("640x360, 32x8 midpoint on " << test::device().candidate().name << ": march " << best_march << " ms, bare loop " << best_bare
-                                    << " ms, ratio " << best_march / best_bare);
+  WARN("640x360, 32x8 midpoint on " << test::device().candidate().name << ": march " << best_march << " ms, bare loop "
+                                    << best_bare << " ms, ratio " << best_march / best_bare);
   CHECK(best_march < 1.3 * best_bare);
 }
 

@@ -27,9 +27,23 @@ const int MIE_PHASE = 0;
 // The floats the shader is given, so that the inputs' own rounding is not part of the difference.
 RayLight march(const welkin::test::RayItem& item, int rule) {
   const auto wide = [](const float(&v)[4]) { return vec4(v[0], v[1], v[2], v[3]); };
-  const Atmosphere atmosphere{wide(item.rayleigh),      wide(item.mie_scattering), wide(item.mie_extinction),
-                              wide(item.ozone),         wide(item.shape),          wide(item.ground),
-                              wide(item.sun_irradiance)};
+  const auto three = [](const float(&v)[4]) { return vec3(v[0], v[1], v[2]); };
+  const Atmosphere atmosphere{three(item.rayleigh),
+                              item.rayleigh[3],
+                              three(item.mie_scattering),
+                              item.mie_scattering[3],
+                              three(item.mie_extinction),
+                              item.mie_extinction[3],
+                              three(item.ozone),
+                              item.ozone[3],
+                              item.shape[0],
+                              item.shape[1],
+                              item.shape[2],
+                              item.shape[3],
+                              three(item.ground),
+                              item.ground[3],
+                              three(item.sun_irradiance),
+                              item.sun_irradiance[3]};
   return single_scattering(atmosphere, double(item.view[3]), vec3(wide(item.view)), vec3(wide(item.sun)),
                            int(item.steps[0]), int(item.steps[1]), rule);
 }

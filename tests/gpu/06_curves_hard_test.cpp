@@ -48,7 +48,8 @@ TEST_CASE("hard: Uchimura without a toe, without a shoulder, without either") {
     const double x = lights[i], clipped = std::min(x, 1.0);
     const auto at = [&](size_t which) { return double(got[5 * i + which].out[0]); };
     INFO("x = " << x);
-    // m = 0: a line a x up to l, then the shoulder. As printed x/m is 0/0 or infinite, and smoothstep(0, 0, x) undefined.
+    // m = 0: a line a x up to l, then the shoulder. As printed x/m is 0/0 or infinite, and smoothstep(0, 0, x)
+    // undefined.
     const double line_end = 0.4f, shoulder = 1.0 - (1.0 - line_end) * std::exp(-(x - line_end) / (1.0 - line_end));
     CHECK(at(0) == Approx(x < line_end ? x : shoulder).margin(2e-6));
     // l = 1: no shoulder; the line runs to the peak and stays there. As printed C2 divides by p - s1 = 0.
@@ -70,7 +71,8 @@ TEST_CASE("hard: Hable's curve of faint light") {
     held = std::max(held, std::abs(got.out[2] / want - 1.0));
     naive = std::max(naive, std::abs(got.out[3] / want - 1.0));
   }
-  std::printf("Hable for x of 1e-8 to 1e-4: as printed wrong by up to %.0f %%, over one fraction %.1e\n", 100.0 * naive, held);
+  std::printf("Hable for x of 1e-8 to 1e-4: as printed wrong by up to %.0f %%, over one fraction %.1e\n", 100.0 * naive,
+              held);
   CHECK(held < 1e-6);
   CHECK(naive > 0.5);
 }
@@ -82,7 +84,8 @@ TEST_CASE("hard: xyY of black, of what is no colour, of almost nothing") {
   CHECK(black.out[0] == Approx(0.3127));  // and not 0/0
   CHECK(black.out[1] == Approx(0.3290));
   CHECK(black.out[2] == 0.0f);
-  for (const Answer& answer : {back(black.out[0], black.out[1], 0.0f), back(0, 0, 0), back(0.3f, 0, 1), there(kNan, 0, 0), back(kNan, kNan, kNan)})
+  for (const Answer& answer : {back(black.out[0], black.out[1], 0.0f), back(0, 0, 0), back(0.3f, 0, 1),
+                               there(kNan, 0, 0), back(kNan, kNan, kNan)})
     for (int c = 0; c < 3; ++c) CHECK(std::isfinite(answer.out[c]));
   const Answer faint = there(1e-28f, 2e-28f, 3e-28f);
   const Answer again = back(faint.out[0], faint.out[1], faint.out[2]);

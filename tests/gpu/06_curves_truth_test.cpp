@@ -1,8 +1,8 @@
 // The tone curves as the shader computes them, against double code written from the published formulas as they are
 // printed, and against values their authors state.
 //
-// Tolerances: results lie in 0..1 and float32 holds them to 6e-8; a driver's pow and exp may err by a few 1e-6. The worst
-// measured is 5e-7. 1e-5 is a four-hundredth of a step of an 8-bit screen.
+// Tolerances: results lie in 0..1 and float32 holds them to 6e-8; a driver's pow and exp may err by a few 1e-6. The
+// worst measured is 5e-7. 1e-5 is a four-hundredth of a step of an 8-bit screen.
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
@@ -44,13 +44,17 @@ double hable_printed(double x) {
 
 double lottes_printed(double x) {
   const double a = 1.6, d = 0.977, hdrMax = 8.0, midIn = 0.18, midOut = 0.267;
-  const double b = (-std::pow(midIn, a) + std::pow(hdrMax, a) * midOut) / ((std::pow(hdrMax, a * d) - std::pow(midIn, a * d)) * midOut);
-  const double c = (std::pow(hdrMax, a * d) * std::pow(midIn, a) - std::pow(hdrMax, a) * std::pow(midIn, a * d) * midOut) /
+  const double b = (-std::pow(midIn, a) + std::pow(hdrMax, a) * midOut) /
                    ((std::pow(hdrMax, a * d) - std::pow(midIn, a * d)) * midOut);
+  const double c =
+      (std::pow(hdrMax, a * d) * std::pow(midIn, a) - std::pow(hdrMax, a) * std::pow(midIn, a * d) * midOut) /
+      ((std::pow(hdrMax, a * d) - std::pow(midIn, a * d)) * midOut);
   return std::pow(x, a) / (std::pow(x, a * d) * b + c);
 }
 
-double rrt_and_odt(double v) { return (v * (v + 0.0245786) - 0.000090537) / (v * (0.983729 * v + 0.4329510) + 0.238081); }
+double rrt_and_odt(double v) {
+  return (v * (v + 0.0245786) - 0.000090537) / (v * (0.983729 * v + 0.4329510) + 0.238081);
+}
 
 double printed(int curve, double x) {
   switch (curve) {
@@ -73,7 +77,8 @@ Rgb times(const double (&m)[3][3], const Rgb& v) {
 
 Rgb hill_printed(const Rgb& rgb) {
   const double in[3][3] = {{0.59719, 0.35458, 0.04823}, {0.07600, 0.90834, 0.01566}, {0.02840, 0.13383, 0.83777}};
-  const double out[3][3] = {{1.60475, -0.53108, -0.07367}, {-0.10208, 1.10813, -0.00605}, {-0.00327, -0.07276, 1.07602}};
+  const double out[3][3] = {
+      {1.60475, -0.53108, -0.07367}, {-0.10208, 1.10813, -0.00605}, {-0.00327, -0.07276, 1.07602}};
   Rgb v = times(in, rgb);
   for (double& c : v) c = saturate(rrt_and_odt(c));
   v = times(out, v);
@@ -112,7 +117,8 @@ TEST_CASE("truth: every curve is what was published") {
     double worst = 0.0, worst_gained = 0.0;
     for (size_t i = 0; i < inputs.size(); ++i) {
       worst = std::max(worst, std::abs(got[i].out[0] - printed(curve, std::min<double>(inputs[i], 65504.0))));
-      worst_gained = std::max(worst_gained, std::abs(got[i].out[1] - printed(curve, std::min(inputs[i] * gain, 65504.0))));
+      worst_gained =
+          std::max(worst_gained, std::abs(got[i].out[1] - printed(curve, std::min(inputs[i] * gain, 65504.0))));
     }
     std::printf("%s: worst error %.1e, with its grey gain %.1e\n", kNames[curve], worst, worst_gained);
     CHECK(worst < kTolerance);
@@ -139,14 +145,15 @@ TEST_CASE("truth: every curve rises and stays between black and white") {
 
 TEST_CASE("truth: values the authors state") {
   const auto at = [](int curve, float x) { return double(curve_answers(curve, {x}).front().out[0]); };
-  CHECK(at(1, 4.0f) == Approx(1.0).margin(1e-6));         // Reinhard: the white point is white
-  CHECK(at(2, 1.0f) == Approx(0.8).margin(0.005));        // Narkowicz: "1 on input maps to 0.8 on output"
-  CHECK(at(3, 0.18f) == Approx(0.10).margin(0.01));       // ACES: an 18 % grey card at a tenth of the screen's white
-  CHECK(at(4, 0.18f) == Approx(0.267).margin(1e-5));      // Lottes: mid_in to mid_out
-  CHECK(at(4, 8.0f) == Approx(1.0).margin(2e-5));         // and the peak to 1
-  for (float x : {0.22f, 0.3f, 0.4f, 0.5f}) CHECK(at(5, x) == Approx(x).margin(1e-6));  // Uchimura: a line from m to m + l0
-  CHECK(at(6, 5.6f) == Approx(1.0).margin(1e-6));         // Hable: white at 11.2, halved by the bias
-  for (int curve = 0; curve < 7; ++curve) {               // ours: middle grey stays middle grey
+  CHECK(at(1, 4.0f) == Approx(1.0).margin(1e-6));     // Reinhard: the white point is white
+  CHECK(at(2, 1.0f) == Approx(0.8).margin(0.005));    // Narkowicz: "1 on input maps to 0.8 on output"
+  CHECK(at(3, 0.18f) == Approx(0.10).margin(0.01));   // ACES: an 18 % grey card at a tenth of the screen's white
+  CHECK(at(4, 0.18f) == Approx(0.267).margin(1e-5));  // Lottes: mid_in to mid_out
+  CHECK(at(4, 8.0f) == Approx(1.0).margin(2e-5));     // and the peak to 1
+  for (float x : {0.22f, 0.3f, 0.4f, 0.5f})
+    CHECK(at(5, x) == Approx(x).margin(1e-6));     // Uchimura: a line from m to m + l0
+  CHECK(at(6, 5.6f) == Approx(1.0).margin(1e-6));  // Hable: white at 11.2, halved by the bias
+  for (int curve = 0; curve < 7; ++curve) {        // ours: middle grey stays middle grey
     INFO(kNames[curve]);
     CHECK(curve_answers(curve, {0.18f}).front().out[1] == Approx(0.18).margin(1e-5));
   }
@@ -178,9 +185,11 @@ TEST_CASE("truth: there and back through xyY") {
   Random random(60);
   std::vector<Item> there;
   for (int i = 0; i < 20000; ++i)
-    there.push_back({{3.0f, float(random.log_uniform(1e-7, 1e3)), float(random.log_uniform(1e-7, 1e3)), float(random.log_uniform(1e-7, 1e3))}});
+    there.push_back({{3.0f, float(random.log_uniform(1e-7, 1e3)), float(random.log_uniform(1e-7, 1e3)),
+                      float(random.log_uniform(1e-7, 1e3))}});
   std::vector<Item> back;
-  for (const Answer& answer : evaluate_items(there)) back.push_back({{4.0f, answer.out[0], answer.out[1], answer.out[2]}});
+  for (const Answer& answer : evaluate_items(there))
+    back.push_back({{4.0f, answer.out[0], answer.out[1], answer.out[2]}});
   const std::vector<Answer> got = evaluate_items(back);
   for (size_t i = 0; i < got.size(); ++i) {
     // The matrices are printed to seven digits, and a channel is a difference of terms of the size of the largest.
@@ -211,7 +220,8 @@ TEST_CASE("truth: a colour no screen has keeps its luminance and its hue, and gi
     const double before = std::max({in[0], in[1], in[2]}), after = std::max({out[0], out[1], out[2]});
     REQUIRE(after <= 1.0 + 2e-6);
     REQUIRE(std::min({out[0], out[1], out[2]}) >= -1e-6f);
-    if (before <= 1.0) for (int k = 0; k < 3; ++k) REQUIRE(out[k] == Approx(in[k]).margin(1e-6));
+    if (before <= 1.0)
+      for (int k = 0; k < 3; ++k) REQUIRE(out[k] == Approx(in[k]).margin(1e-6));
     if (before <= 1.0) continue;
     ++moved;
     CHECK(after == Approx(1.0).margin(2e-6));  // no further than it must

@@ -1,5 +1,5 @@
-// The display pass as a whole: what it draws, what a scene that has no meter does not have, and what dithering does to the
-// bands of a twilight.
+// The display pass as a whole: what it draws, what a scene that has no meter does not have, and what dithering does to
+// the bands of a twilight.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -26,7 +26,8 @@ Image dusk(uint32_t width, uint32_t height) {
   Image picture = flat_picture(width, height, glm::vec3(0.0f));
   for (uint32_t y = 0; y < height; ++y)
     for (uint32_t x = 0; x < width; ++x)
-      picture.pixels[y * width + x] = glm::vec4(glm::vec3(1e-4f * std::exp2(0.6f * (float(y) + 0.5f) / float(height))) * glm::vec3(0.5f, 0.6f, 1.0f), 1.0f);
+      picture.pixels[y * width + x] = glm::vec4(
+          glm::vec3(1e-4f * std::exp2(0.6f * (float(y) + 0.5f) / float(height))) * glm::vec3(0.5f, 0.6f, 1.0f), 1.0f);
   return picture;
 }
 
@@ -60,7 +61,8 @@ TEST_CASE("an exposure set by hand leaves no pass and no buffer") {
 
 TEST_CASE("by hand it is 24 times two to the stops; metered, compensation adds stops") {
   for (const char* curve : kNames) {
-    const auto level = [&](const std::vector<std::pair<std::string, std::string>>& knobs, const Post& post, float light) {
+    const auto level = [&](const std::vector<std::pair<std::string, std::string>>& knobs, const Post& post,
+                           float light) {
       std::vector<std::pair<std::string, std::string>> all{{"display.curve", curve}, {"display.dither", "off"}};
       all.insert(all.end(), knobs.begin(), knobs.end());
       DisplayRig rig({8, 8}, all, post);
@@ -72,7 +74,8 @@ TEST_CASE("by hand it is 24 times two to the stops; metered, compensation adds s
     const int grey = 118;  // 255 srgb(0.18) = 117.6
     CHECK(std::abs(level({{"exposure.mode", "manual"}}, {}, 0.18f / 24.0f) - grey) <= 1);
     CHECK(std::abs(level({{"exposure.mode", "manual"}}, {.exposure_ev = 3.0}, 0.18f / 192.0f) - grey) <= 1);
-    CHECK(std::abs(level({{"exposure.adaptation", "1"}}, {}, 3e-5f) - grey) <= 3);  // 64 pixels: known to a few hundredths of a stop
+    CHECK(std::abs(level({{"exposure.adaptation", "1"}}, {}, 3e-5f) - grey) <=
+          3);  // 64 pixels: known to a few hundredths of a stop
     CHECK(level({{"exposure.adaptation", "1"}, {"exposure.compensation", "2"}}, {}, 3e-5f) ==
           level({{"exposure.adaptation", "1"}}, {.compensation_ev = 2.0}, 3e-5f));
     CHECK(level({{"exposure.adaptation", "1"}, {"exposure.compensation", "2"}}, {}, 3e-5f) > grey + 40);
@@ -82,9 +85,12 @@ TEST_CASE("by hand it is 24 times two to the stops; metered, compensation adds s
 TEST_CASE("strips: each shows the middle of the picture through its own curve") {
   constexpr uint32_t kWidth = 7 * 24, kHeight = 9;
   Image picture = flat_picture(kWidth, kHeight, glm::vec3(0.0f));
-  for (uint32_t i = 0; i < kWidth * kHeight; ++i) picture.pixels[i] = glm::vec4(glm::vec3(0.05f, 0.02f, 0.001f) * float(1 + i % kWidth), 1.0f);
+  for (uint32_t i = 0; i < kWidth * kHeight; ++i)
+    picture.pixels[i] = glm::vec4(glm::vec3(0.05f, 0.02f, 0.001f) * float(1 + i % kWidth), 1.0f);
   const auto shown = [&](const char* curve, const char* space) {
-    DisplayRig rig({kWidth, kHeight}, {{"display.curve", curve}, {"display.space", space}, {"display.dither", "off"}, {"exposure.mode", "manual"}});
+    DisplayRig rig(
+        {kWidth, kHeight},
+        {{"display.curve", curve}, {"display.space", space}, {"display.dither", "off"}, {"exposure.mode", "manual"}});
     rig.set_picture(picture);
     rig.draw(0, 0.0);
     return rig.displayed();
@@ -116,14 +122,16 @@ TEST_CASE("a value that is no number is magenta, and its neighbours are not") {
 }
 
 TEST_CASE("dithering: the bands of a dusk are gone, its light is not") {
-  // What an eye does from afar: means over blocks of 16 x 16 pixels. Undithered, a block is off by up to half a level in
-  // one direction over the whole band; dithered, its error is that of 256 independent roundings.
+  // What an eye does from afar: means over blocks of 16 x 16 pixels. Undithered, a block is off by up to half a level
+  // in one direction over the whole band; dithered, its error is that of 256 independent roundings.
   constexpr uint32_t kWidth = 512, kHeight = 1024, kBlock = 16;
   const Image picture = dusk(kWidth, kHeight);
   double rms[2] = {}, longest[2] = {};
   Image8 shown[2];
   for (int on = 0; on < 2; ++on) {
-    DisplayRig rig({kWidth, kHeight}, {{"display.dither", on ? "on" : "off"}, {"display.curve", "clamp"}, {"exposure.mode", "manual"}}, {.exposure_ev = 4.0});
+    DisplayRig rig({kWidth, kHeight},
+                   {{"display.dither", on ? "on" : "off"}, {"display.curve", "clamp"}, {"exposure.mode", "manual"}},
+                   {.exposure_ev = 4.0});
     rig.set_picture(picture);
     rig.draw(0, 0.0);
     shown[on] = rig.displayed();
@@ -147,15 +155,17 @@ TEST_CASE("dithering: the bands of a dusk are gone, its light is not") {
       longest[on] = std::max(longest[on], run);
     }
   }
-  std::printf("dusk, blocks of 16 x 16: rms error %.3f levels without, %.3f with dithering; longest band %.0f and %.0f rows\n",
-              rms[0], rms[1], longest[0], longest[1]);
+  std::printf(
+      "dusk, blocks of 16 x 16: rms error %.3f levels without, %.3f with dithering; longest band %.0f and %.0f rows\n",
+      rms[0], rms[1], longest[0], longest[1]);
   CHECK(rms[0] > 0.2);
   CHECK(rms[1] < 0.05);  // sqrt(1/12 + 1/6)/16 = 0.031 for independent roundings; noise of neighbours cancels some
   CHECK(longest[0] > 10.0);
   CHECK(longest[1] < 0.7 * longest[0]);
   // Off is off: every pixel is the nearest level, and every row one level.
   for (uint32_t y = 0; y < kHeight; ++y)
-    for (uint32_t x = 1; x < kWidth; ++x) REQUIRE(int(shown[0].rgba[4 * (y * kWidth + x) + 1]) == int(shown[0].rgba[4 * y * kWidth + 1]));
+    for (uint32_t x = 1; x < kWidth; ++x)
+      REQUIRE(int(shown[0].rgba[4 * (y * kWidth + x) + 1]) == int(shown[0].rgba[4 * y * kWidth + 1]));
 }
 
 TEST_CASE("dithering leaves black black and white white") {
@@ -164,6 +174,7 @@ TEST_CASE("dithering leaves black black and white white") {
     rig.set_picture(flat_picture(64, 64, glm::vec3(light)));
     rig.draw(0, 0.0);
     const Image8 shown = rig.displayed();
-    for (size_t i = 0; i < shown.rgba.size(); ++i) REQUIRE(int(shown.rgba[i]) == (light > 0.0f || i % 4 == 3 ? 255 : 0));
+    for (size_t i = 0; i < shown.rgba.size(); ++i)
+      REQUIRE(int(shown.rgba[i]) == (light > 0.0f || i % 4 == 3 ? 255 : 0));
   }
 }

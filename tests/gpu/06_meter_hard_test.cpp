@@ -27,7 +27,14 @@ void check_finite(const ExposureState& state) {
 
 TEST_CASE("hard: counts sum to the pixels, whatever the size") {
   Random random(62);
-  for (const auto& [width, height] : {std::pair<uint32_t, uint32_t>{1, 1}, {7, 5}, {1, 33}, {33, 1}, {31, 32}, {64, 64}, {1920, 1080}, {1921, 1079}}) {
+  for (const auto& [width, height] : {std::pair<uint32_t, uint32_t>{1, 1},
+                                      {7, 5},
+                                      {1, 33},
+                                      {33, 1},
+                                      {31, 32},
+                                      {64, 64},
+                                      {1920, 1080},
+                                      {1921, 1079}}) {
     Image picture = flat_picture(width, height, glm::vec3(0.0f));
     const float unusual[] = {0.0f, -1.0f, kInf, -kInf, kNan, 1e-44f, 3e38f, 0.01f};
     for (glm::vec4& pixel : picture.pixels) pixel.r = pixel.g = pixel.b = unusual[random.next() % 8];
@@ -100,7 +107,9 @@ TEST_CASE("hard: the exposure does not flicker") {
   const auto sky = [&](bool sun) {
     Image picture = flat_picture(kWidth, kHeight, glm::vec3(0.0f));
     for (uint32_t i = 0; i < kWidth * kHeight; ++i)
-      picture.pixels[i] = glm::vec4(glm::vec3(float(0.02 * (1.0 + 0.02 * random.uniform(-1, 1)) * std::exp2(-2.0 * i / (kWidth * kHeight)))), 1.0f);
+      picture.pixels[i] = glm::vec4(
+          glm::vec3(float(0.02 * (1.0 + 0.02 * random.uniform(-1, 1)) * std::exp2(-2.0 * i / (kWidth * kHeight)))),
+          1.0f);
     if (sun)
       for (uint32_t i = 0; i < 4; ++i) picture.pixels[1000 + i] = glm::vec4(glm::vec3(2e4f), 1.0f);
     return picture;
@@ -111,11 +120,15 @@ TEST_CASE("hard: the exposure does not flicker") {
     rig.set_picture(sky(frame >= 20));
     rig.draw(frame, 1.0 / 60.0);
     const ExposureState state = rig.state();
-    if (frame == 0) first = state.exposure;
-    else worst = std::max(worst, std::abs(state.exposure - before)), worst_target = std::max(worst_target, std::abs(state.target - before_target));
+    if (frame == 0)
+      first = state.exposure;
+    else
+      worst = std::max(worst, std::abs(state.exposure - before)),
+      worst_target = std::max(worst_target, std::abs(state.target - before_target));
     before = state.exposure, before_target = state.target;
   }
-  std::printf("noise of 2 %%, then the sun: target moves by at most %.5f stops a frame, exposure by %.6f\n", worst_target, worst);
+  std::printf("noise of 2 %%, then the sun: target moves by at most %.5f stops a frame, exposure by %.6f\n",
+              worst_target, worst);
   CHECK(worst_target < 0.01);
   CHECK(worst < 0.001);
   CHECK(std::abs(before - first) < 0.005);
@@ -132,7 +145,8 @@ TEST_CASE("hard: a mean of light instead of its logarithm follows the sun") {
   rig.set_picture(picture);
   rig.draw(0, 0.0);
   const double held = std::abs(rig.state().mean_log2 - std::log2(0.02));
-  std::printf("the sun's disc in a picture: mean of light off by %.1f stops, trimmed mean of logarithms by %.3f\n", naive, held);
+  std::printf("the sun's disc in a picture: mean of light off by %.1f stops, trimmed mean of logarithms by %.3f\n",
+              naive, held);
   CHECK(naive > 5.0);
   CHECK(held < 0.1);  // a picture of one colour is known to half a bin
 }

@@ -1,5 +1,5 @@
-// The light meter against double: every bin of the histogram, the mean between two ranks, the exposure, and its way there
-// in time against the closed form.
+// The light meter against double: every bin of the histogram, the mean between two ranks, the exposure, and its way
+// there in time against the closed form.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -22,7 +22,8 @@ Image gradient(uint32_t width, uint32_t height, double darkest_log2, double brig
   for (uint32_t y = 0; y < height; ++y)
     for (uint32_t x = 0; x < width; ++x) {
       const double at = (x + double(y) / height) / width;
-      picture.pixels[y * width + x] = glm::vec4(glm::vec3(float(std::exp2(darkest_log2 + (brightest_log2 - darkest_log2) * at))), 1.0f);
+      picture.pixels[y * width + x] =
+          glm::vec4(glm::vec3(float(std::exp2(darkest_log2 + (brightest_log2 - darkest_log2) * at))), 1.0f);
     }
   return picture;
 }
@@ -34,7 +35,8 @@ double total(const std::vector<uint32_t>& bins) { return std::accumulate(bins.be
 TEST_CASE("truth: the bin of a luminance, and the value of a bin") {
   Random random(61);
   std::vector<Item> items;
-  for (int i = 0; i < 100000; ++i) items.push_back({{6.0f, float(random.log_uniform(1e-12, 1e8)), float(random.uniform(0.0, 1.0))}});
+  for (int i = 0; i < 100000; ++i)
+    items.push_back({{6.0f, float(random.log_uniform(1e-12, 1e8)), float(random.uniform(0.0, 1.0))}});
   const std::vector<Answer> got = evaluate_items(items);
   double worst_bin = 0.0, sum = 0.0, sum_wanted = 0.0;
   for (size_t i = 0; i < items.size(); ++i) {
@@ -87,8 +89,10 @@ TEST_CASE("truth: every bin of a picture") {
       double doubtful = 0.0;  // pixels on an edge of a bin to within what float32 knows of log2
       for (uint32_t y = 0; y * stride < height; ++y)
         for (uint32_t x = 0; x * stride < width; ++x) {
-          const uint32_t row = std::min(y * stride + stride / 2, height - 1), column = std::min(x * stride + stride / 2, width - 1);
-          const double position = position_of(luminance_of(picture.pixels[row * width + column])) + pixel_noise_reference(x, y, 0) - 0.5;
+          const uint32_t row = std::min(y * stride + stride / 2, height - 1),
+                         column = std::min(x * stride + stride / 2, width - 1);
+          const double position =
+              position_of(luminance_of(picture.pixels[row * width + column])) + pixel_noise_reference(x, y, 0) - 0.5;
           wanted[1 + size_t(std::clamp(std::floor(position), 0.0, 254.0))] += 1.0;
           doubtful += std::abs(position - std::round(position)) < 1e-3;
         }
@@ -104,7 +108,10 @@ TEST_CASE("truth: every bin of a picture") {
 TEST_CASE("truth: the mean between two ranks and the exposure it asks for") {
   for (const auto& [low, high] : {std::pair{"0", "1"}, {"0.1", "0.95"}, {"0.4", "0.6"}})
     for (const char* adaptation : {"0", "0.85", "1"}) {
-      DisplayRig rig({320, 181}, {{"exposure.low", low}, {"exposure.high", high}, {"exposure.adaptation", adaptation}, {"exposure.stride", "1"}});
+      DisplayRig rig({320, 181}, {{"exposure.low", low},
+                                  {"exposure.high", high},
+                                  {"exposure.adaptation", adaptation},
+                                  {"exposure.stride", "1"}});
       const Image picture = gradient(320, 181, -20.0, -3.0);
       rig.set_picture(picture);
       rig.draw(0, 0.0);
@@ -133,9 +140,11 @@ TEST_CASE("truth: the exposure of a uniform picture has no steps") {
     if (i > 0) largest_step = std::max(largest_step, std::abs(exposure - before));
     before = exposure;
   }
-  std::printf("a uniform picture, brighter by %.2f stops a frame: exposure off by at most %.3f, largest step %.3f stops\n", step, worst, largest_step);
-  // The noise leaves two bins, and of the lower one 45 % of the pixels are cut off: at most 0.45 bins, 0.088 stops. While
-  // that happens the mean moves by up to twice what the light does; the rest is chance.
+  std::printf(
+      "a uniform picture, brighter by %.2f stops a frame: exposure off by at most %.3f, largest step %.3f stops\n",
+      step, worst, largest_step);
+  // The noise leaves two bins, and of the lower one 45 % of the pixels are cut off: at most 0.45 bins, 0.088 stops.
+  // While that happens the mean moves by up to twice what the light does; the rest is chance.
   CHECK(worst < 0.1);
   CHECK(largest_step < 0.03);
 }
@@ -143,7 +152,8 @@ TEST_CASE("truth: the exposure of a uniform picture has no steps") {
 TEST_CASE("truth: adaptation follows the exponential, whatever the frames") {
   // From one picture to another, 7 stops apart, in 2 s of irregular frames.
   const auto run = [](double from_log2, double to_log2, int frames, uint64_t seed, double seconds) {
-    DisplayRig rig({32, 32}, {{"exposure.to_bright_s", "0.4"}, {"exposure.to_dark_s", "1.5"}, {"exposure.stride", "1"}});
+    DisplayRig rig({32, 32},
+                   {{"exposure.to_bright_s", "0.4"}, {"exposure.to_dark_s", "1.5"}, {"exposure.stride", "1"}});
     rig.set_picture(flat_picture(32, 32, glm::vec3(float(std::exp2(from_log2)))));
     rig.draw(0, 0.0);
     const double start = rig.state().exposure;

@@ -27,7 +27,8 @@ DisplayRig::DisplayRig(VkExtent2D size, const std::vector<std::pair<std::string,
   const uint64_t before = device().allocated_bytes();
   display_ = std::make_unique<AutoDisplay>(context_);
   bytes_ = device().allocated_bytes() - before;
-  constexpr VkImageUsageFlags kUsage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  constexpr VkImageUsageFlags kUsage =
+      VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
   picture_ = gpu::create_image(device(), "picture", size, VK_FORMAT_R32G32B32A32_SFLOAT, kUsage);
   displayed_ = gpu::create_image(device(), "displayed", size, VK_FORMAT_R8G8B8A8_UNORM, kUsage);
   display_->set_images(picture_, displayed_);
@@ -35,11 +36,13 @@ DisplayRig::DisplayRig(VkExtent2D size, const std::vector<std::pair<std::string,
 
 void DisplayRig::set_picture(const Image& picture) {
   const size_t bytes = picture.pixels.size() * sizeof(glm::vec4);
-  const gpu::Buffer buffer = gpu::create_buffer(device(), "upload", bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Where::upload);
+  const gpu::Buffer buffer =
+      gpu::create_buffer(device(), "upload", bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Where::upload);
   std::memcpy(buffer.mapped, picture.pixels.data(), bytes);
   gpu::run_once(device(), pool_, [&](VkCommandBuffer commands) {
     gpu::image_barrier(commands, picture_.handle, {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT}, gpu::kTransferWrite);
-    const VkBufferImageCopy region{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1}, .imageExtent = {picture.width, picture.height, 1}};
+    const VkBufferImageCopy region{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                                   .imageExtent = {picture.width, picture.height, 1}};
     vkCmdCopyBufferToImage(commands, buffer.handle, picture_.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
     gpu::image_barrier(commands, picture_.handle, gpu::kTransferWrite, gpu::kComputeRead);
   });
@@ -57,7 +60,8 @@ void DisplayRig::draw(uint32_t index, double seconds) {
 
 template <typename T>
 std::vector<T> DisplayRig::read(const gpu::Buffer& buffer) const {
-  const gpu::Buffer host = gpu::create_buffer(device(), "readback", buffer.bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Where::readback);
+  const gpu::Buffer host =
+      gpu::create_buffer(device(), "readback", buffer.bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Where::readback);
   gpu::run_once(device(), pool_, [&](VkCommandBuffer commands) {
     gpu::buffer_barrier(commands, buffer.handle, gpu::kComputeWrite, gpu::kTransferRead);
     const VkBufferCopy region{0, 0, buffer.bytes};

@@ -1,8 +1,7 @@
-// The frame graph: its order, what it leaves out and refuses, and the barriers it derives, without a device; then chapter
-// 08's frames on one: what runs again after what change, and that a frame makes nothing it did not have.
-#include <catch2/catch.hpp>
-
+// The frame graph: its order, what it leaves out and refuses, and the barriers it derives, without a device; then
+// chapter 08's frames on one: what runs again after what change, and that a frame makes nothing it did not have.
 #include <algorithm>
+#include <catch2/catch.hpp>
 
 #include "chapters/06_display/auto_display.hpp"
 #include "chapters/08_transmittance_lut/table_sky.hpp"
@@ -20,8 +19,10 @@ using namespace welkin::test;
 
 namespace {
 
-constexpr gpu::Use kVertexRead{VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT, VK_IMAGE_LAYOUT_GENERAL};
-constexpr gpu::Use kFragmentSampled{VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, VK_IMAGE_LAYOUT_READ_ONLY_OPTIMAL};
+constexpr gpu::Use kVertexRead{VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT,
+                               VK_IMAGE_LAYOUT_GENERAL};
+constexpr gpu::Use kFragmentSampled{VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
+                                    VK_IMAGE_LAYOUT_READ_ONLY_OPTIMAL};
 
 const gpu::Image kNoImage;  // compile() looks at names only
 const gpu::Buffer kNoBuffer;
@@ -40,7 +41,8 @@ std::string message_of(graph::Graph& graph) {
 }
 
 std::string text(const graph::Barrier& barrier) {
-  return barrier.pass + "/" + barrier.resource + ": " + graph::describe(barrier.before) + " -> " + graph::describe(barrier.after);
+  return barrier.pass + "/" + barrier.resource + ": " + graph::describe(barrier.before) + " -> " +
+         graph::describe(barrier.after);
 }
 
 std::vector<std::string> texts(const graph::Graph& graph, int frame = 0) {
@@ -52,11 +54,13 @@ std::vector<std::string> texts(const graph::Graph& graph, int frame = 0) {
 // air -> table -> picture, the passes declared in the order given.
 std::vector<std::string> order_declared(const std::string& declared) {
   graph::Graph graph;
-  const graph::Resource air = graph.add("air", kNoBuffer), table = graph.add("table", kNoImage), picture = graph.add("picture", kNoImage);
+  const graph::Resource air = graph.add("air", kNoBuffer), table = graph.add("table", kNoImage),
+                        picture = graph.add("picture", kNoImage);
   for (char which : declared) {
     if (which == 'a') pass(graph, "air", {{air, gpu::kUpdate}});
     if (which == 't') pass(graph, "table", {{air, gpu::kUniformRead}, {table, gpu::kComputeWrite}});
-    if (which == 'm') pass(graph, "march", {{table, gpu::kSampledRead}, {air, gpu::kUniformRead}, {picture, gpu::kComputeWrite}});
+    if (which == 'm')
+      pass(graph, "march", {{table, gpu::kSampledRead}, {air, gpu::kUniformRead}, {picture, gpu::kComputeWrite}});
   }
   graph.want(picture);
   graph.compile();
@@ -109,7 +113,9 @@ TEST_CASE("graph: what cannot be ordered is refused, by name") {
   const graph::Resource itself = in_place.add("itself", kNoImage);
   pass(in_place, "changer", {{itself, gpu::kComputeRead}, {itself, gpu::kComputeWrite}});
   in_place.want(itself);
-  CHECK(message_of(in_place) == "frame graph: pass 'changer' names 'itself' twice; what it changes must be another resource than what it reads");
+  CHECK(
+      message_of(in_place) ==
+      "frame graph: pass 'changer' names 'itself' twice; what it changes must be another resource than what it reads");
 
   graph::Graph wanted;
   wanted.want(wanted.add("nothing", kNoImage));
@@ -118,7 +124,8 @@ TEST_CASE("graph: what cannot be ordered is refused, by name") {
 
 TEST_CASE("graph: the barriers are these and no others") {
   graph::Graph graph;
-  const graph::Resource air = graph.add("air", kNoBuffer), table = graph.add("table", kNoImage), picture = graph.add("picture", kNoImage);
+  const graph::Resource air = graph.add("air", kNoBuffer), table = graph.add("table", kNoImage),
+                        picture = graph.add("picture", kNoImage);
   const graph::Resource shown = graph.add("shown", kNoImage);
   pass(graph, "air", {{air, gpu::kUpdate}});
   pass(graph, "table", {{air, gpu::kUniformRead}, {table, gpu::kComputeWrite}});
@@ -126,33 +133,42 @@ TEST_CASE("graph: the barriers are these and no others") {
   pass(graph, "show", {{table, gpu::kSampledRead}, {picture, kFragmentSampled}, {shown, gpu::kComputeWrite}});
   graph.want(shown);
   graph.compile();
-  CHECK(texts(graph) == std::vector<std::string>{
-            "table/air: transfer, write -> compute shader, uniform read",                            // read after write
-            "table/table: nothing -> compute shader, storage write, GENERAL",                        // a first layout
+  CHECK(texts(graph) ==
+        std::vector<std::string>{
+            "table/air: transfer, write -> compute shader, uniform read",      // read after write
+            "table/table: nothing -> compute shader, storage write, GENERAL",  // a first layout
             "march/table: compute shader, storage write, GENERAL -> compute shader, sampled read, GENERAL",
-            "march/picture: nothing -> compute shader, storage write, GENERAL",                      // air again: nothing, it is visible
+            "march/picture: nothing -> compute shader, storage write, GENERAL",  // air again: nothing, it is visible
             "show/picture: compute shader, storage write, GENERAL -> fragment shader, sampled read, READ_ONLY_OPTIMAL",
-            "show/shown: nothing -> compute shader, storage write, GENERAL"});                       // table again: nothing
-  // All of it once more: what is written now has been read (execution is enough, nothing to make visible) or, shown, only written.
-  CHECK(texts(graph, 1) == std::vector<std::string>{
-            "air/air: compute shader, transfer -> transfer, write",                                   // write after read
-            "table/air: transfer, write -> compute shader, uniform read",
-            "table/table: compute shader, GENERAL -> compute shader, storage write, GENERAL",         // write after two readers
-            "march/table: compute shader, storage write, GENERAL -> compute shader, sampled read, GENERAL",
-            "march/picture: fragment shader, READ_ONLY_OPTIMAL -> compute shader, storage write, GENERAL",  // and back to its layout
-            "show/picture: compute shader, storage write, GENERAL -> fragment shader, sampled read, READ_ONLY_OPTIMAL",
-            "show/shown: compute shader, storage write, GENERAL -> compute shader, storage write, GENERAL"});  // write after write
+            "show/shown: nothing -> compute shader, storage write, GENERAL"});  // table again: nothing
+  // All of it once more: what is written now has been read (execution is enough, nothing to make visible) or, shown,
+  // only written.
+  CHECK(
+      texts(graph, 1) ==
+      std::vector<std::string>{
+          "air/air: compute shader, transfer -> transfer, write",  // write after read
+          "table/air: transfer, write -> compute shader, uniform read",
+          "table/table: compute shader, GENERAL -> compute shader, storage write, GENERAL",  // write after two readers
+          "march/table: compute shader, storage write, GENERAL -> compute shader, sampled read, GENERAL",
+          "march/picture: fragment shader, READ_ONLY_OPTIMAL -> compute shader, storage write, GENERAL",  // and back to
+                                                                                                          // its layout
+          "show/picture: compute shader, storage write, GENERAL -> fragment shader, sampled read, READ_ONLY_OPTIMAL",
+          "show/shown: compute shader, storage write, GENERAL -> compute shader, storage write, GENERAL"});  // write
+                                                                                                             // after
+                                                                                                             // write
 }
 
 TEST_CASE("graph: who looks at a picture between frames is waited for") {
   for (const VkImageLayout layout : {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL}) {
     graph::Graph graph;
-    const graph::Resource picture = graph.add("picture", kNoImage, {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_NONE, layout});
+    const graph::Resource picture =
+        graph.add("picture", kNoImage, {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_NONE, layout});
     pass(graph, "march", {{picture, gpu::kComputeWrite}});
     graph.want(picture);
     graph.compile();
     const std::string kept = layout == VK_IMAGE_LAYOUT_UNDEFINED ? "" : ", GENERAL";
-    CHECK(texts(graph, 1) == std::vector<std::string>{"march/picture: compute shader, copy" + kept + " -> compute shader, storage write, GENERAL"});
+    CHECK(texts(graph, 1) == std::vector<std::string>{"march/picture: compute shader, copy" + kept +
+                                                      " -> compute shader, storage write, GENERAL"});
   }
 }
 
@@ -164,7 +180,8 @@ TEST_CASE("graph: visibility is counted per stage and access together") {
   for (int i = 0; i < 5; ++i) results.push_back(graph.add("result " + std::to_string(i), kNoBuffer));
   pass(graph, "table", {{table, gpu::kComputeWrite}});
   const gpu::Use reads[] = {gpu::kSampledRead, kVertexRead, gpu::kSampledRead, gpu::kComputeRead, kVertexRead};
-  for (int i = 0; i < 5; ++i) pass(graph, "reader " + std::to_string(i), {{table, reads[i]}, {results[i], gpu::kUpdate}});
+  for (int i = 0; i < 5; ++i)
+    pass(graph, "reader " + std::to_string(i), {{table, reads[i]}, {results[i], gpu::kUpdate}});
   for (graph::Resource result : results) graph.want(result);
   graph.compile();
   std::vector<std::string> waits;
@@ -202,7 +219,10 @@ TEST_CASE("graph: the table is filled once, and again only when the air or its o
   const auto frames = [&](int count) {
     for (int i = 0; i < count; ++i) renderer.draw(world.pose, 0.0, 1, index++);
   };
-  const auto runs = [&] { return std::array<uint64_t, 3>{sky.graph().runs("air"), sky.graph().runs("transmittance"), sky.graph().runs("march")}; };
+  const auto runs = [&] {
+    return std::array<uint64_t, 3>{sky.graph().runs("air"), sky.graph().runs("transmittance"),
+                                   sky.graph().runs("march")};
+  };
   using Runs = std::array<uint64_t, 3>;
   frames(5);
   CHECK(runs() == Runs{1, 1, 5});

@@ -11,7 +11,8 @@
 
 namespace welkin::test {
 
-std::vector<LookedUp> look_up(const std::string& scene_name, const Choices& choices, std::span<const Path> paths, Sampler sampler) {
+std::vector<LookedUp> look_up(const std::string& scene_name, const Choices& choices, std::span<const Path> paths,
+                              Sampler sampler) {
   const Scene scene = load_scene(scene_name, app::scenes_directory());
   Settings settings(transmittance_knobs());
   for (const auto& [name, text] : choices) settings.set(name, text);
@@ -22,11 +23,17 @@ std::vector<LookedUp> look_up(const std::string& scene_name, const Choices& choi
   TransmittanceLut table(context, graph, air);
 
   constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-  const gpu::Buffer in = gpu::create_buffer(device(), "paths", paths.size() * sizeof(glm::vec4), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::upload);
-  const gpu::Buffer out = gpu::create_buffer(device(), "results", paths.size() * 2 * sizeof(glm::vec4), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::readback);
+  const gpu::Buffer in = gpu::create_buffer(device(), "paths", paths.size() * sizeof(glm::vec4),
+                                            VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::upload);
+  const gpu::Buffer out = gpu::create_buffer(device(), "results", paths.size() * 2 * sizeof(glm::vec4),
+                                             VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::readback);
   for (size_t i = 0; i < paths.size(); ++i) in.as<glm::vec4>()[i] = {paths[i].altitude_km, paths[i].mu, 0.0f, 0.0f};
   const gpu::ComputePipeline pipeline = gpu::create_compute_pipeline(
-      device(), sampler == Sampler::coarse ? "tests/08_look_up_coarse.comp" : "tests/08_look_up.comp", {{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}, {1, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, {2, kStorage}, {3, kStorage}},
+      device(), sampler == Sampler::coarse ? "tests/08_look_up_coarse.comp" : "tests/08_look_up.comp",
+      {{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
+       {1, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
+       {2, kStorage},
+       {3, kStorage}},
       sizeof(uint32_t), table.variant());
   const gpu::DescriptorSet set = gpu::create_descriptor_set(device(), pipeline.set_layout, pipeline.bindings);
   gpu::write_buffer(device(), set, 0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, air.buffer());
@@ -36,7 +43,9 @@ std::vector<LookedUp> look_up(const std::string& scene_name, const Choices& choi
   const uint32_t count = static_cast<uint32_t>(paths.size());
   const graph::Resource results = graph.add("results", out);
   graph.add({.name = "look up",
-             .accesses = {{air.resource(), gpu::kUniformRead}, {table.resource(), gpu::kSampledRead}, {results, gpu::kComputeWrite}},
+             .accesses = {{air.resource(), gpu::kUniformRead},
+                          {table.resource(), gpu::kSampledRead},
+                          {results, gpu::kComputeWrite}},
              .record = [&](const app::Frame& frame) {
                gpu::dispatch(frame.commands, pipeline, set, count, (count + 63) / 64);
                gpu::buffer_barrier(frame.commands, out.handle, gpu::kComputeWrite, gpu::kHostRead);
@@ -55,12 +64,15 @@ std::vector<LookedUp> look_up(const std::string& scene_name, const Choices& choi
 }
 
 std::vector<TruePath> path_rows(const std::string& file) {
-  const CsvTable table = read_csv(std::string(WELKIN_TEST_DATA "/") + file, {"h_km", "view_zenith_deg", "lowest_altitude_km", "tau_r", "tau_g", "tau_b", "T_r", "T_g", "T_b"});
+  const CsvTable table =
+      read_csv(std::string(WELKIN_TEST_DATA "/") + file,
+               {"h_km", "view_zenith_deg", "lowest_altitude_km", "tau_r", "tau_g", "tau_b", "T_r", "T_g", "T_b"});
   std::vector<TruePath> rows;
   for (size_t i = 0; i < table.rows; ++i) {
     const auto at = [&](const char* name) { return table.column(name)[i]; };
     const Path path{float(at("h_km")), float(reference::direction_from_degrees(at("view_zenith_deg"), 0.0)[2])};
-    rows.push_back({path, at("lowest_altitude_km"), {at("tau_r"), at("tau_g"), at("tau_b")}, {at("T_r"), at("T_g"), at("T_b")}});
+    rows.push_back(
+        {path, at("lowest_altitude_km"), {at("tau_r"), at("tau_g"), at("tau_b")}, {at("T_r"), at("T_g"), at("T_b")}});
   }
   return rows;
 }
@@ -89,7 +101,9 @@ std::vector<TruePath> random_paths(const reference::Planet& planet, uint64_t see
     const auto column = reference::columns(planet, a, m, sine, m >= 0.0 ? rho2 / (ra * m + root) : root - ra * m);
     TruePath truth{path, lowest, {}, {}};
     for (int k = 0; k < 3; ++k) {
-      truth.optical_depth[k] = planet.rayleigh_scattering_per_km[k] * column[0] + planet.mie_extinction_per_km[k] * column[1] + planet.ozone_absorption_per_km[k] * column[2];
+      truth.optical_depth[k] = planet.rayleigh_scattering_per_km[k] * column[0] +
+                               planet.mie_extinction_per_km[k] * column[1] +
+                               planet.ozone_absorption_per_km[k] * column[2];
       truth.transmittance[k] = std::exp(-truth.optical_depth[k]);
     }
     paths.push_back(truth);

@@ -1,5 +1,5 @@
-// What chapter 08's tests share: a planet's table filled on the device, and paths looked up in it by the shader's functions.
-// Units: km.
+// What chapter 08's tests share: a planet's table filled on the device, and paths looked up in it by the shader's
+// functions. Units: km.
 #pragma once
 
 #include <array>
@@ -28,7 +28,8 @@ using Choices = std::vector<std::pair<std::string, std::string>>;  // knobs set 
 enum class Sampler { device, coarse };  // coarse: weights between texels rounded to 1/256
 
 // scene: "earth" or "alien" of chapters/scenes.
-std::vector<LookedUp> look_up(const std::string& scene, const Choices& choices, std::span<const Path> paths, Sampler sampler = Sampler::device);
+std::vector<LookedUp> look_up(const std::string& scene, const Choices& choices, std::span<const Path> paths,
+                              Sampler sampler = Sampler::device);
 
 // A path and what it lets through.
 struct TruePath {
@@ -46,6 +47,7 @@ std::vector<TruePath> path_rows(const std::string& file);
 std::vector<TruePath> random_paths(const reference::Planet& planet, uint64_t seed, int count);
 
 // Largest relative error of the transmittances above 1e-4; NaN counts as 1e30.
-double worst_error(const std::string& scene, const Choices& choices, std::span<const TruePath> truth, Sampler sampler = Sampler::device);
+double worst_error(const std::string& scene, const Choices& choices, std::span<const TruePath> truth,
+                   Sampler sampler = Sampler::device);
 
 }  // namespace welkin::test

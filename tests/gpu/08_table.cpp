@@ -23,18 +23,24 @@ const char* file() {
 
 // The errors of a table with these choices: Earth's rows, Earth's random paths, the dense planet's, its random paths.
 std::vector<std::string> errors(const Choices& choices, Sampler sampler = Sampler::device) {
-  static const std::vector<TruePath> truth[4]{path_rows("transmittance_earth.csv"), random_paths(reference::earth(), 8, 4000),
-                                              path_rows("transmittance_alien.csv"), random_paths(reference::dense_alien(), 8, 4000)};
+  static const std::vector<TruePath> truth[4]{
+      path_rows("transmittance_earth.csv"), random_paths(reference::earth(), 8, 4000),
+      path_rows("transmittance_alien.csv"), random_paths(reference::dense_alien(), 8, 4000)};
   std::vector<std::string> row;
-  for (int i = 0; i < 4; ++i) row.push_back(fmt::format("{:.2g}", worst_error(i < 2 ? "earth" : "alien", choices, truth[i], sampler)));
+  for (int i = 0; i < 4; ++i)
+    row.push_back(fmt::format("{:.2g}", worst_error(i < 2 ? "earth" : "alien", choices, truth[i], sampler)));
   return row;
 }
 
-void write(const std::string& what, const std::string& tag, const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows) {
+void write(const std::string& what, const std::string& tag, const std::vector<std::string>& header,
+           const std::vector<std::vector<std::string>>& rows) {
   write_csv(file(),
-            {"largest relative error of transmittances above 1e-4: on the rows of tests/data/transmittance_*.csv and on 4000 random paths; " + what,
+            {"largest relative error of transmittances above 1e-4: on the rows of tests/data/transmittance_*.csv and "
+             "on 4000 random paths; " +
+                 what,
              "device: " + device().candidate().name, "driver: " + device().candidate().driver,
-             fmt::format("source: WELKIN_TABLE=docs/generated/08_{}.csv gpu_tests \"[08_{}]\"", tag == "table" ? "errors" : tag, tag)},
+             fmt::format("source: WELKIN_TABLE=docs/generated/08_{}.csv gpu_tests \"[08_{}]\"",
+                         tag == "table" ? "errors" : tag, tag)},
             header, rows);
 }
 
@@ -45,14 +51,19 @@ TEST_CASE("table of errors of the transmittance table", "[.][08_table]") {
   for (const char* mapping : {"published", "folded"})
     for (const char* stored : {"transmittance", "optical_depth", "mean_extinction"})
       for (const char* format : {"half", "float"})
-        for (const auto& [width, height] : {std::pair{"256", "64"}, {"128", "128"}, {"256", "256"}, {"128", "512"}, {"256", "512"}}) {
+        for (const auto& [width, height] :
+             {std::pair{"256", "64"}, {"128", "128"}, {"256", "256"}, {"128", "512"}, {"256", "512"}}) {
           std::vector<std::string> row{mapping, stored, format, fmt::format("{} × {}", width, height)};
-          const std::vector<std::string> numbers = errors({{"transmittance.mapping", mapping}, {"transmittance.stored", stored}, {"transmittance.format", format},
-                                                           {"transmittance.width", width}, {"transmittance.height", height}});
+          const std::vector<std::string> numbers = errors({{"transmittance.mapping", mapping},
+                                                           {"transmittance.stored", stored},
+                                                           {"transmittance.format", format},
+                                                           {"transmittance.width", width},
+                                                           {"transmittance.height", height}});
           row.insert(row.end(), numbers.begin(), numbers.end());
           rows.push_back(row);
         }
-  write("texels by chapter 05's closed form", "table", {"mapping", "stored", "format", "size", "earth", "earth_random", "alien", "alien_random"}, rows);
+  write("texels by chapter 05's closed form", "table",
+        {"mapping", "stored", "format", "size", "earth", "earth_random", "alien", "alien_random"}, rows);
 }
 
 TEST_CASE("table of errors by how texels are filled and read", "[.][08_texels]") {
@@ -65,6 +76,8 @@ TEST_CASE("table of errors by how texels are filled and read", "[.][08_texels]")
   };
   add("closed form", "the device's", "0", Sampler::device);
   add("closed form", "rounded to 1/256", "0", Sampler::coarse);
-  for (const char* points : {"8", "16", "32", "64"}) add((std::string(points) + " points").c_str(), "the device's", points, Sampler::device);
-  write("the default table otherwise", "texels", {"texels_by", "weights", "earth", "earth_random", "alien", "alien_random"}, rows);
+  for (const char* points : {"8", "16", "32", "64"})
+    add((std::string(points) + " points").c_str(), "the device's", points, Sampler::device);
+  write("the default table otherwise", "texels",
+        {"texels_by", "weights", "earth", "earth_random", "alien", "alien_random"}, rows);
 }

@@ -1,7 +1,6 @@
-// Where transmittance tables break: named cases, each with the figure of the naive form, which runs in the same shaders,
-// beside that of the form that holds.
+// Where transmittance tables break: named cases, each with the figure of the naive form, which runs in the same
+// shaders, beside that of the form that holds.
 #include <catch2/catch.hpp>
-
 #include <cmath>
 
 #include "tests/gpu/08_look_up.hpp"
@@ -23,18 +22,24 @@ std::vector<float> maps(float kind, const std::vector<std::pair<float, float>>& 
 // A path from altitude h whose lowest point is there, and its truth.
 TruePath dipping(const reference::Planet& planet, double altitude_km, double lowest_km) {
   const double radius = planet.ground_radius_km, top_km = planet.top_radius_km - radius;
-  const Path path{float(altitude_km), float(-std::sqrt((altitude_km - lowest_km) * (2.0 * radius + altitude_km + lowest_km)) / (radius + altitude_km))};
+  const Path path{
+      float(altitude_km),
+      float(-std::sqrt((altitude_km - lowest_km) * (2.0 * radius + altitude_km + lowest_km)) / (radius + altitude_km))};
   const double m = path.mu, h = path.altitude_km, sine = std::sqrt((1.0 - m) * (1.0 + m)), r = radius + h;
-  const auto column = reference::columns(planet, h, m, sine, -r * m + std::sqrt(r * m * r * m + (top_km - h) * (2.0 * radius + top_km + h)));
+  const auto column = reference::columns(
+      planet, h, m, sine, -r * m + std::sqrt(r * m * r * m + (top_km - h) * (2.0 * radius + top_km + h)));
   TruePath truth{path, h - r * m * m / (1.0 + sine), {}, {}};
   for (int k = 0; k < 3; ++k) {
-    truth.optical_depth[k] = planet.rayleigh_scattering_per_km[k] * column[0] + planet.mie_extinction_per_km[k] * column[1] + planet.ozone_absorption_per_km[k] * column[2];
+    truth.optical_depth[k] = planet.rayleigh_scattering_per_km[k] * column[0] +
+                             planet.mie_extinction_per_km[k] * column[1] +
+                             planet.ozone_absorption_per_km[k] * column[2];
     truth.transmittance[k] = std::exp(-truth.optical_depth[k]);
   }
   return truth;
 }
 
-const Choices kPublished{{"transmittance.mapping", "published"}, {"transmittance.stored", "transmittance"}, {"transmittance.height", "64"}};
+const Choices kPublished{
+    {"transmittance.mapping", "published"}, {"transmittance.stored", "transmittance"}, {"transmittance.height", "64"}};
 
 }  // namespace
 
@@ -52,9 +57,9 @@ TEST_CASE("hard: texel maps that are not inverse of each other") {
     CAPTURE(texels, holds, naive);
     CHECK(holds < 2e-7);
     CHECK(naive > 0.2 / (texels * texels));
-    CHECK(out[1] < 0.0f);                                       // 0 comes back negative: under a root that is NaN
+    CHECK(out[1] < 0.0f);  // 0 comes back negative: under a root that is NaN
     CHECK(out[0] >= 0.0f);
-    CHECK(out[2] == 0.5f / texels);                             // the ends are centres of texels
+    CHECK(out[2] == 0.5f / texels);  // the ends are centres of texels
     CHECK(out[8 * 1000 + 2] == Approx(1.0f - 0.5f / texels).epsilon(1e-7));
   }
 }
@@ -77,7 +82,8 @@ TEST_CASE("hard: the horizon's distance from half a metre, as the root of r^2 - 
   CHECK((naive == Approx(0.01179).epsilon(1e-2) || naive == Approx(0.1215).epsilon(1e-2)));
 }
 
-// The ray that grazes: from half a metre, and from 1 m to 99 km, down to where its lowest point is 1 cm above the ground.
+// The ray that grazes: from half a metre, and from 1 m to 99 km, down to where its lowest point is 1 cm above the
+// ground.
 TEST_CASE("hard: the ray that just grazes the ground") {
   std::vector<TruePath> truth;
   for (double altitude_km : {0.0005, 0.001, 0.01, 0.1, 1.0, 5.0, 20.0, 60.0, 99.0})
@@ -85,7 +91,8 @@ TEST_CASE("hard: the ray that just grazes the ground") {
       if (lowest_km < altitude_km) truth.push_back(dipping(reference::earth(), altitude_km, lowest_km));
   const double naive = worst_error("earth", kPublished, truth), holds = worst_error("earth", {}, truth);
   CAPTURE(naive, holds);
-  CHECK(naive > 0.05);  // the published table's last column is a whole kilometre of lowest point wide, seen from the top
+  CHECK(naive >
+        0.05);  // the published table's last column is a whole kilometre of lowest point wide, seen from the top
   CHECK(holds < 1e-3);
 }
 
@@ -104,7 +111,8 @@ TEST_CASE("hard: both boundaries") {
         CAPTURE(alien, choices.empty(), paths[i].altitude_km, mu, k, t);
         REQUIRE(std::isfinite(t));
         if (paths[i].altitude_km == 100.0f && mu >= 0.0) {
-          CHECK(t == (choices.empty() ? Approx(1.0).margin(0.0).epsilon(0.0) : Approx(1.0).epsilon(1e-5)));  // no air above the top
+          CHECK(t == (choices.empty() ? Approx(1.0).margin(0.0).epsilon(0.0)
+                                      : Approx(1.0).epsilon(1e-5)));  // no air above the top
           continue;
         }
         if (paths[i].altitude_km == 0.0f && mu < 0.0 && mu > -1e-6) continue;  // touches the ground: either is right
@@ -115,20 +123,22 @@ TEST_CASE("hard: both boundaries") {
   }
 }
 
-// Near the top an optical depth goes like the root of what is left above, which no line between texels follows. Divided by
-// the path's length it does not.
+// Near the top an optical depth goes like the root of what is left above, which no line between texels follows. Divided
+// by the path's length it does not.
 TEST_CASE("hard: the last kilometre under the top of a dense planet") {
   std::vector<TruePath> truth;
   for (double below_km : {0.001, 0.01, 0.05, 0.1, 0.2, 0.3, 0.5, 0.8})
-    for (double dip : {0.0, 0.1, 0.5}) truth.push_back(dipping(reference::dense_alien(), 100.0 - below_km, 100.0 - below_km - dip - 1e-6));
-  const double naive = worst_error("alien", {{"transmittance.stored", "optical_depth"}}, truth), holds = worst_error("alien", {}, truth);
+    for (double dip : {0.0, 0.1, 0.5})
+      truth.push_back(dipping(reference::dense_alien(), 100.0 - below_km, 100.0 - below_km - dip - 1e-6));
+  const double naive = worst_error("alien", {{"transmittance.stored", "optical_depth"}}, truth),
+               holds = worst_error("alien", {}, truth);
   CAPTURE(naive, holds);
   CHECK(naive > 5e-3);
   CHECK(holds < 2e-4);
 }
 
-// Seen from 100 km the sun may stand 10 degrees under the horizontal and still be up. Which suns are, is asked of the lowest
-// point in float32 and compared with double; and what they let through.
+// Seen from 100 km the sun may stand 10 degrees under the horizontal and still be up. Which suns are, is asked of the
+// lowest point in float32 and compared with double; and what they let through.
 TEST_CASE("hard: a sun below the horizontal seen from the top of the air") {
   Random random(4);
   std::vector<Path> paths;
@@ -154,7 +164,8 @@ TEST_CASE("hard: a sun below the horizontal seen from the top of the air") {
   CHECK(up > 5000);
 }
 
-// Between the ray that grazes and the one that hits nothing is blended: transmittance falls from what the table holds to 0.
+// Between the ray that grazes and the one that hits nothing is blended: transmittance falls from what the table holds
+// to 0.
 TEST_CASE("hard: no light is lost to the ground beside the horizon") {
   std::vector<TruePath> truth;
   for (int i = 0; i < 200; ++i) truth.push_back(dipping(reference::earth(), 30.0, 1e-4 + 2e-5 * i));
@@ -181,6 +192,8 @@ TEST_CASE("hard: a million random paths stay finite and within bounds") {
   }
   size_t bad = 0;
   for (const LookedUp& found : look_up(alien ? "alien" : "earth", {}, paths))
-    for (int k = 0; k < 3; ++k) bad += !(found.transmittance[k] >= 0.0 && found.transmittance[k] <= 1.0 && found.optical_depth[k] >= 0.0 && std::isfinite(found.optical_depth[k]));
+    for (int k = 0; k < 3; ++k)
+      bad += !(found.transmittance[k] >= 0.0 && found.transmittance[k] <= 1.0 && found.optical_depth[k] >= 0.0 &&
+               std::isfinite(found.optical_depth[k]));
   CHECK(bad == 0);
 }

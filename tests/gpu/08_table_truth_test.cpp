@@ -1,7 +1,6 @@
 // Chapter 08's transmittance table against tests/data/transmittance_*.csv and against quadrature of fresh random paths.
 // The promise: relative error below 1e-3 wherever the transmittance is above 1e-4, at the default size.
 #include <catch2/catch.hpp>
-
 #include <cmath>
 
 #include "chapters/08_transmittance_lut/table_sky.hpp"
@@ -17,12 +16,14 @@ using namespace welkin::test;
 namespace {
 
 const std::vector<TruePath>& rows(bool alien) {
-  static const std::vector<TruePath> tables[] = {path_rows("transmittance_earth.csv"), path_rows("transmittance_alien.csv")};
+  static const std::vector<TruePath> tables[] = {path_rows("transmittance_earth.csv"),
+                                                 path_rows("transmittance_alien.csv")};
   return tables[alien];
 }
 
 const std::vector<TruePath>& fresh(bool alien) {
-  static const std::vector<TruePath> paths[] = {random_paths(reference::earth(), 8, 4000), random_paths(reference::dense_alien(), 9, 4000)};
+  static const std::vector<TruePath> paths[] = {random_paths(reference::earth(), 8, 4000),
+                                                random_paths(reference::dense_alien(), 9, 4000)};
   return paths[alien];
 }
 
@@ -50,7 +51,8 @@ TEST_CASE("truth: the transmittance tables are whole") {
 // Seen: 2.9e-4 on Earth's rows and 5.8e-4 on fresh paths; 9e-5 and 2.3e-4 on the dense planet.
 TEST_CASE("truth: the default table holds 1e-3 on every row") {
   const bool alien = GENERATE(false, true);
-  const double on_rows = worst_error(scene(alien), {}, rows(alien)), on_fresh = worst_error(scene(alien), {}, fresh(alien));
+  const double on_rows = worst_error(scene(alien), {}, rows(alien)),
+               on_fresh = worst_error(scene(alien), {}, fresh(alien));
   CAPTURE(alien, on_rows, on_fresh);
   CHECK(on_rows < 1e-3);
   CHECK(on_fresh < 1e-3);
@@ -59,7 +61,8 @@ TEST_CASE("truth: the default table holds 1e-3 on every row") {
 // lavapipe filters in full float; the specification asks for four bits of weight, and hardware has eight.
 TEST_CASE("truth: the default table holds 1e-3 with weights of eight bits") {
   const bool alien = GENERATE(false, true);
-  const double on_rows = worst_error(scene(alien), {}, rows(alien), Sampler::coarse), on_fresh = worst_error(scene(alien), {}, fresh(alien), Sampler::coarse);
+  const double on_rows = worst_error(scene(alien), {}, rows(alien), Sampler::coarse),
+               on_fresh = worst_error(scene(alien), {}, fresh(alien), Sampler::coarse);
   CAPTURE(alien, on_rows, on_fresh);
   CHECK(on_rows < 1e-3);
   CHECK(on_fresh < 1e-3);
@@ -67,34 +70,42 @@ TEST_CASE("truth: the default table holds 1e-3 with weights of eight bits") {
 
 // The published form at its published size, and what each step away from it is worth.
 TEST_CASE("truth: the published table misses, and each step towards the default helps") {
-  const auto worst = [](const Choices& choices) { return std::fmax(worst_error("earth", choices, fresh(false)), worst_error("alien", choices, fresh(true))); };
-  const double published = worst({{"transmittance.mapping", "published"}, {"transmittance.stored", "transmittance"}, {"transmittance.width", "256"}, {"transmittance.height", "64"}});
+  const auto worst = [](const Choices& choices) {
+    return std::fmax(worst_error("earth", choices, fresh(false)), worst_error("alien", choices, fresh(true)));
+  };
+  const double published = worst({{"transmittance.mapping", "published"},
+                                  {"transmittance.stored", "transmittance"},
+                                  {"transmittance.width", "256"},
+                                  {"transmittance.height", "64"}});
   const double large = worst({{"transmittance.mapping", "published"}, {"transmittance.stored", "transmittance"}});
   const double depth = worst({{"transmittance.mapping", "published"}, {"transmittance.stored", "optical_depth"}});
   const double folded = worst({{"transmittance.stored", "optical_depth"}});
   const double mean = worst({});
   CAPTURE(published, large, depth, folded, mean);
-  CHECK(published > 0.1);   // seen: 13 %
-  CHECK(large > 0.1);       // eight times the texels do not help: it is the other axis
+  CHECK(published > 0.1);  // seen: 13 %
+  CHECK(large > 0.1);      // eight times the texels do not help: it is the other axis
   CHECK(depth < 0.5 * large);
   CHECK(folded < depth);
-  CHECK(folded > 1e-3);     // the last kilometres under the top of the dense planet
+  CHECK(folded > 1e-3);  // the last kilometres under the top of the dense planet
   CHECK(mean < 1e-3);
 }
 
-// 16 bits have 11 binary digits. A driver may store a number rounded to the nearest or towards zero, and may return what
-// it filters as 16 bits, too. Then a look-up errs, in units of 2^-10 of itself, by -1.5 to +0.5: storing by -1 to 0,
-// filtering by 1/2 either way (below 2^-14 in units of 2^-24, absolutely). An upward path's optical depth tau errs by as
-// much. One that dips is 2 tau_1 - tau_2: by 1.5 (2 tau_1) + 0.5 tau_2 = 1.5 tau + 2 tau_2 at most, and tau_2, what lies
-// beyond the path's start, is part of tau: 3.5 tau. (The absolute part: 4.5 times the longest path.) The table itself
-// errs by 1e-3. Seen: 0.8 % on lavapipe, which stores towards zero and filters in 32 bits; 1.2 % and 1.6 % on NVIDIA's
-// driver, which stores towards zero and filters in 16: imitated in the shaders on lavapipe, that gives the same digits.
+// 16 bits have 11 binary digits. A driver may store a number rounded to the nearest or towards zero, and may return
+// what it filters as 16 bits, too. Then a look-up errs, in units of 2^-10 of itself, by -1.5 to +0.5: storing by -1 to
+// 0, filtering by 1/2 either way (below 2^-14 in units of 2^-24, absolutely). An upward path's optical depth tau errs
+// by as much. One that dips is 2 tau_1 - tau_2: by 1.5 (2 tau_1) + 0.5 tau_2 = 1.5 tau + 2 tau_2 at most, and tau_2,
+// what lies beyond the path's start, is part of tau: 3.5 tau. (The absolute part: 4.5 times the longest path.) The
+// table itself errs by 1e-3. Seen: 0.8 % on lavapipe, which stores towards zero and filters in 32 bits; 1.2 % and 1.6 %
+// on NVIDIA's driver, which stores towards zero and filters in 16: imitated in the shaders on lavapipe, that gives the
+// same digits.
 TEST_CASE("truth: sixteen bits are not enough for 1e-3") {
   const bool alien = GENERATE(false, true);
   const double half = worst_error(scene(alien), {{"transmittance.format", "half"}}, fresh(alien));
   const reference::Planet planet = alien ? reference::dense_alien() : reference::earth();
-  const double longest_km = std::sqrt((planet.top_radius_km - planet.ground_radius_km) * (planet.top_radius_km + planet.ground_radius_km));
-  const double bound = std::expm1(3.5 * -std::log(1e-4) * 0x1p-10 + 4.5 * longest_km * 0x1p-24) + 1e-3;  // 1e-4: the least that is scored
+  const double longest_km =
+      std::sqrt((planet.top_radius_km - planet.ground_radius_km) * (planet.top_radius_km + planet.ground_radius_km));
+  const double bound = std::expm1(3.5 * -std::log(1e-4) * 0x1p-10 + 4.5 * longest_km * 0x1p-24) +
+                       1e-3;  // 1e-4: the least that is scored
   CAPTURE(alien, half, bound);
   CHECK(half > 1e-3);
   CHECK(half < bound);
@@ -122,7 +133,9 @@ TEST_CASE("truth: texel maps are inverse of each other") {
   std::vector<float> inputs;
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x)
-      for (float v : {0.0f, shape.radius_km, shape.top_km, (float(x) + 0.5f) / kWidth, (float(y) + 0.5f) / kHeight, float(kWidth), float(kHeight), 0.0f}) inputs.push_back(v);
+      for (float v : {0.0f, shape.radius_km, shape.top_km, (float(x) + 0.5f) / kWidth, (float(y) + 0.5f) / kHeight,
+                      float(kWidth), float(kHeight), 0.0f})
+        inputs.push_back(v);
   const std::vector<float> out = evaluate("tests/08_maps.comp", inputs, 8, 8, {static_cast<uint32_t>(mapping)});
   double worst_u = 0.0, worst_v = 0.0;
   size_t outside = 0;
@@ -130,7 +143,8 @@ TEST_CASE("truth: texel maps are inverse of each other") {
     const bool top_row = i / kWidth == kHeight - 1;
     const float u = inputs[8 * i + 3], v = inputs[8 * i + 4], mu = out[8 * i + 1];
     outside += !(mu >= -1.0f && mu <= 1.0f && out[8 * i] >= 0.0f && out[8 * i] <= shape.top_km);
-    if (!(top_row && mapping == 1)) worst_u = std::fmax(worst_u, std::abs(double(out[8 * i + 2]) - u));  // on the top all upward paths are one
+    if (!(top_row && mapping == 1))
+      worst_u = std::fmax(worst_u, std::abs(double(out[8 * i + 2]) - u));  // on the top all upward paths are one
     worst_v = std::fmax(worst_v, std::abs(double(out[8 * i + 3]) - v));
   }
   CAPTURE(mapping, shape.radius_km, worst_u * kWidth, worst_v * kHeight);
@@ -143,15 +157,18 @@ TEST_CASE("truth: texel maps are inverse of each other") {
 TEST_CASE("truth: the sky from the table holds 1 % on every row") {
   const bool alien = GENERATE(false, true);
   const reference::Planet planet = alien ? reference::dense_alien() : reference::earth();
-  const std::vector<TruthRow> truth = truth_rows(alien ? "single_scattering_alien.csv" : "single_scattering_earth.csv", planet);
+  const std::vector<TruthRow> truth =
+      truth_rows(alien ? "single_scattering_alien.csv" : "single_scattering_earth.csv", planet);
   Scene world = load_scene(scene(alien), app::scenes_directory());
   const Settings settings(table_sky_knobs());
   const std::string no_fault;
   TableSky sky({device(), world, settings, no_fault});
   std::vector<app::ProbeRay> rays;
-  for (const TruthRow& row : truth) rays.push_back({row.ray.altitude_km, row.view_zenith_deg, row.sun_zenith_deg, row.azimuth_deg});
+  for (const TruthRow& row : truth)
+    rays.push_back({row.ray.altitude_km, row.view_zenith_deg, row.sun_zenith_deg, row.azimuth_deg});
   const std::vector<app::ProbeResult> lights = sky.probe(rays);
-  const std::string& phase = world.medium("mie")->phase == welkin::Phase::cornette_shanks ? "cornette_shanks" : "henyey_greenstein";
+  const std::string& phase =
+      world.medium("mie")->phase == welkin::Phase::cornette_shanks ? "cornette_shanks" : "henyey_greenstein";
   Errors errors;
   for (size_t i = 0; i < truth.size(); ++i) {
     reference::Rgb want = phase == "cornette_shanks" ? truth[i].cornette_shanks : truth[i].henyey_greenstein;
@@ -160,7 +177,7 @@ TEST_CASE("truth: the sky from the table holds 1 % on every row") {
   }
   CAPTURE(alien, phase, errors.maximum(), errors.quantile(0.99), errors.quantile(0.5));
   CHECK(errors.values.size() >= (alien ? 141u : 4342u));
-  CHECK(errors.maximum() < 0.01);      // seen: 0.20 % and 0.07 %; chapter 05's closed form: 0.14 % and 0.06 %
+  CHECK(errors.maximum() < 0.01);  // seen: 0.20 % and 0.07 %; chapter 05's closed form: 0.14 % and 0.06 %
   CHECK(errors.quantile(0.99) < 1e-3);
   CHECK(errors.quantile(0.5) < 2e-4);
 }

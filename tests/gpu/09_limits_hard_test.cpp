@@ -1,7 +1,6 @@
-// Hard cases of chapter 09: air that loses nothing, air so thick that hardly anything leaves it, twilight, the top of the
-// air, and air that scatters nothing.
+// Hard cases of chapter 09: air that loses nothing, air so thick that hardly anything leaves it, twilight, the top of
+// the air, and air that scatters nothing.
 #include <catch2/catch.hpp>
-
 #include <cmath>
 
 #include "chapters/09_multiple_scattering_lut/multiple_scattering_lut.hpp"
@@ -23,15 +22,17 @@ Scene furnace(const char* name) {
 }
 
 // Suns of equal irradiance in every direction make a uniform sky of radiance 1 around the planet, and then it is 1
-// everywhere: 1 = 1/2 int T(mu) dmu + 2 pi int J(mu) dmu at every altitude. Returns the largest departure of the sum, the
-// first integral by the single-order sky's transmittance of the scene without its straight-on share.
+// everywhere: 1 = 1/2 int T(mu) dmu + 2 pi int J(mu) dmu at every altitude. Returns the largest departure of the sum,
+// the first integral by the single-order sky's transmittance of the scene without its straight-on share.
 double furnace_error(const char* name, const Choices& choices) {
   const Scene scene = furnace(name);
   const std::vector<TableTexel> texels = table_of(scene, choices);
   const size_t side = static_cast<size_t>(std::sqrt(double(texels.size())) + 0.5);
   std::vector<app::ProbeRay> rays;
   constexpr int kSuns = 64;
-  const auto cosine = [](int i, double horizon) { return horizon + (1.0 - horizon) * std::pow((i + 0.5) / kSuns, 2.0); };
+  const auto cosine = [](int i, double horizon) {
+    return horizon + (1.0 - horizon) * std::pow((i + 0.5) / kSuns, 2.0);
+  };
   const auto width = [](int i, double horizon) { return (1.0 - horizon) * 2.0 * (i + 0.5) / kSuns / kSuns; };
   for (size_t y = 0; y < side; y += 2)
     for (int i = 0; i < kSuns; ++i) {
@@ -42,7 +43,9 @@ double furnace_error(const char* name, const Choices& choices) {
   const bool scaled = choices.empty() || choices.front().second == "moments";
   if (scaled) {
     const double g = beam.medium("mie")->g;
-    const double chi3 = (std::pow(g, 3) + 20.0 / 63.0 * std::pow(g, 5) + 23.0 / 45.0 * std::pow(g, 3) + 6.0 / 35.0 * g) / (1.0 + (1.0 + 2.0 * g * g) / 3.0);
+    const double chi3 =
+        (std::pow(g, 3) + 20.0 / 63.0 * std::pow(g, 5) + 23.0 / 45.0 * std::pow(g, 3) + 6.0 / 35.0 * g) /
+        (1.0 + (1.0 + 2.0 * g * g) / 3.0);
     beam.medium("mie")->scattering_per_km *= 1.0 - chi3;
   }
   const std::vector<app::ProbeResult> light = sky_of(beam, {{"orders", "1"}}, rays);
@@ -65,7 +68,8 @@ double furnace_error(const char* name, const Choices& choices) {
 
 bool finite(const app::ProbeResult& light) {
   for (int k = 0; k < 3; ++k)
-    if (!std::isfinite(light.radiance[k]) || light.radiance[k] < 0.0 || !std::isfinite(light.transmittance[k])) return false;
+    if (!std::isfinite(light.radiance[k]) || light.radiance[k] < 0.0 || !std::isfinite(light.transmittance[k]))
+      return false;
   return true;
 }
 
@@ -103,7 +107,8 @@ TEST_CASE("hard: the closed series stays finite when the transfer reaches one") 
 
 // The white furnace of a table lit by suns from everywhere. Seen: see the numbers beside the bounds.
 TEST_CASE("hard: white furnace") {
-  const double earth = furnace_error("earth", {{"multiple_scattering.method", "moments"}, {"multiple_scattering.iterations", "20"}});
+  const double earth =
+      furnace_error("earth", {{"multiple_scattering.method", "moments"}, {"multiple_scattering.iterations", "20"}});
   const double published = furnace_error("earth", {{"multiple_scattering.method", "published"}});
   CAPTURE(earth, published);
   CHECK(earth < 0.02);
@@ -123,8 +128,10 @@ TEST_CASE("hard: twilight and the top of the air and the night") {
     CHECK(bad == 0);
   }
   // The zenith at -6 and -10 degrees: light there is, although the planet's shadow holds all of the lower air.
-  const std::vector<app::ProbeResult> dusk = sky_of(scene, {}, {{0.0005, 60.0, 96.0, 180.0}, {0.0005, 60.0, 100.0, 180.0}});
-  const std::vector<app::ProbeResult> single = sky_of(scene, {{"orders", "1"}}, {{0.0005, 60.0, 96.0, 180.0}, {0.0005, 60.0, 100.0, 180.0}});
+  const std::vector<app::ProbeResult> dusk =
+      sky_of(scene, {}, {{0.0005, 60.0, 96.0, 180.0}, {0.0005, 60.0, 100.0, 180.0}});
+  const std::vector<app::ProbeResult> single =
+      sky_of(scene, {{"orders", "1"}}, {{0.0005, 60.0, 96.0, 180.0}, {0.0005, 60.0, 100.0, 180.0}});
   for (int i = 0; i < 2; ++i) CHECK(dusk[i].radiance.z > 1.5 * single[i].radiance.z);
   CHECK(dusk[0].radiance.z > 20.0 * dusk[1].radiance.z);
 }
@@ -141,9 +148,9 @@ TEST_CASE("hard: air that scatters nothing") {
   }
 }
 
-// Air of the Earth at a tenth to thirty times its density, and the dense planet: the orders that their optical depth asks
-// for, against 64 of them, wherever the sun is up or up to 4 degrees down. The rule is made for a few percent: what is left
-// is the closing ratio's, in the dark at the bottom of thick air.
+// Air of the Earth at a tenth to thirty times its density, and the dense planet: the orders that their optical depth
+// asks for, against 64 of them, wherever the sun is up or up to 4 degrees down. The rule is made for a few percent:
+// what is left is the closing ratio's, in the dark at the bottom of thick air.
 TEST_CASE("hard: thicker air is given more orders, and they are enough") {
   struct Case {
     const char* scene;
@@ -151,11 +158,18 @@ TEST_CASE("hard: thicker air is given more orders, and they are enough") {
     double bound;
   };
   int before = 0;
-  for (const Case& one : {Case{"earth", 0.1, 1e-3}, {"earth", 1.0, 5e-3}, {"earth", 3.0, 0.03}, {"earth", 10.0, 0.08}, {"alien", 1.0, 0.01}, {"earth", 30.0, 0.08}}) {
+  for (const Case& one : {Case{"earth", 0.1, 1e-3},
+                          {"earth", 1.0, 5e-3},
+                          {"earth", 3.0, 0.03},
+                          {"earth", 10.0, 0.08},
+                          {"alien", 1.0, 0.01},
+                          {"earth", 30.0, 0.08}}) {
     Scene scene = orders_scene(one.scene);
-    for (const char* name : {"rayleigh", "mie"}) scene.medium(name)->scattering_per_km *= one.times, scene.medium(name)->absorption_per_km *= one.times;
+    for (const char* name : {"rayleigh", "mie"})
+      scene.medium(name)->scattering_per_km *= one.times, scene.medium(name)->absorption_per_km *= one.times;
     const int orders = orders_of(make_atmosphere(scene));
-    const std::vector<TableTexel> asked = table_of(scene, {}), many = table_of(scene, {{"multiple_scattering.iterations", "64"}});
+    const std::vector<TableTexel> asked = table_of(scene, {}),
+                                  many = table_of(scene, {{"multiple_scattering.iterations", "64"}});
     double worst = 0.0;
     for (size_t i = 0; i < asked.size(); ++i)
       for (int c = 0; c < 3; ++c) {
@@ -170,7 +184,8 @@ TEST_CASE("hard: thicker air is given more orders, and they are enough") {
   }
   // With four orders, which Earth gets, the dense planet's table is off by many times its worth.
   const Scene alien = orders_scene("alien");
-  const std::vector<TableTexel> few = table_of(alien, {{"multiple_scattering.iterations", "4"}}), many = table_of(alien, {{"multiple_scattering.iterations", "64"}});
+  const std::vector<TableTexel> few = table_of(alien, {{"multiple_scattering.iterations", "4"}}),
+                                many = table_of(alien, {{"multiple_scattering.iterations", "64"}});
   double worst = 0.0;
   for (size_t i = 0; i < few.size(); ++i)
     if (few[i].mu_sun >= -0.07) worst = std::fmax(worst, std::abs(few[i].mean[0] / many[i].mean[0] - 1.0));

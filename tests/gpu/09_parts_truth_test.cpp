@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
-
 #include <cmath>
 
 #include "common/image/csv.hpp"
@@ -24,7 +23,8 @@ struct TransferRow {
 
 const std::vector<TransferRow>& transfer_rows() {
   static const std::vector<TransferRow> loaded = [] {
-    const CsvTable table = read_csv(WELKIN_TEST_DATA "/multiple_scattering_transfer_earth.csv", {"h_km", "sun_zenith_deg"});
+    const CsvTable table =
+        read_csv(WELKIN_TEST_DATA "/multiple_scattering_transfer_earth.csv", {"h_km", "sun_zenith_deg"});
     std::vector<TransferRow> rows;
     for (size_t r = 0; r < table.rows; ++r) {
       TransferRow row{table.column("h_km")[r], table.column("sun_zenith_deg")[r]};
@@ -45,7 +45,9 @@ const std::vector<TransferRow>& transfer_rows() {
 std::vector<std::array<double, 3>> errors_of_rows(float set, int directions, int steps) {
   std::vector<OrderPart> parts;
   for (const TransferRow& row : transfer_rows())
-    parts.push_back({{OrderPart::kTransfer, 0, float(row.altitude_km), float(std::cos(row.sun_zenith_deg * 3.14159265358979324 / 180.0)), float(directions), set, float(steps)}});
+    parts.push_back(
+        {{OrderPart::kTransfer, 0, float(row.altitude_km),
+          float(std::cos(row.sun_zenith_deg * 3.14159265358979324 / 180.0)), float(directions), set, float(steps)}});
   const auto results = evaluate_orders(parts);
   std::vector<std::array<double, 3>> errors(parts.size());
   for (size_t i = 0; i < parts.size(); ++i)
@@ -57,7 +59,8 @@ std::vector<std::array<double, 3>> errors_of_rows(float set, int directions, int
 }
 
 // The worst of them for suns down to this zenith angle and cameras up to this altitude.
-std::array<double, 3> worst_of(const std::vector<std::array<double, 3>>& errors, double sun_zenith_deg, double altitude_km) {
+std::array<double, 3> worst_of(const std::vector<std::array<double, 3>>& errors, double sun_zenith_deg,
+                               double altitude_km) {
   std::array<double, 3> worst{};
   for (size_t i = 0; i < errors.size(); ++i) {
     if (transfer_rows()[i].sun_zenith_deg > sun_zenith_deg || transfer_rows()[i].altitude_km > altitude_km) continue;
@@ -105,7 +108,8 @@ TEST_CASE("truth: texel maps and their inverses are inverses") {
     worst = std::fmax(worst, std::abs(results[i][5] - parts[i].values[5]));
   }
   CAPTURE(map, size);
-  CHECK(worst < 2e-4);  // texels: the rounding of a coordinate between 0 and 1, times 64; a pair that is none errs by 0.5
+  CHECK(worst <
+        2e-4);  // texels: the rounding of a coordinate between 0 and 1, times 64; a pair that is none errs by 0.5
   CHECK(results.front()[0] == Approx(-1.0).epsilon(1e-6));
   CHECK(results.front()[1] == 0.0f);
   CHECK(results.back()[0] == Approx(1.0).epsilon(1e-6));
@@ -119,17 +123,20 @@ TEST_CASE("truth: moments of the aerosol's phase function are its integrals") {
   // Midpoints in x, nu = 1 - 2 x^2 (or its mirror): dense where the lobe is.
   std::array<double, 3> want{};
   for (int i = 0; i < 200000; ++i) {
-    const double q = (i + 0.5) / 200000, side = g < 0.0 ? -1.0 : 1.0, nu = side * (1.0 - 2.0 * q * q), width = 4.0 * q / 200000;
-    const double p = 0.5 * (1 - g * g) / std::pow(1 + g * g - 2 * g * nu, 1.5) * (1 + alpha * nu * nu) / (1 + alpha * (1 + 2 * g * g) / 3);
-    want[0] += width * p * nu, want[1] += width * p * (1.5 * nu * nu - 0.5), want[2] += width * p * (2.5 * nu * nu - 1.5) * nu;
+    const double q = (i + 0.5) / 200000, side = g < 0.0 ? -1.0 : 1.0, nu = side * (1.0 - 2.0 * q * q),
+                 width = 4.0 * q / 200000;
+    const double p = 0.5 * (1 - g * g) / std::pow(1 + g * g - 2 * g * nu, 1.5) * (1 + alpha * nu * nu) /
+                     (1 + alpha * (1 + 2 * g * g) / 3);
+    want[0] += width * p * nu, want[1] += width * p * (1.5 * nu * nu - 0.5),
+        want[2] += width * p * (2.5 * nu * nu - 1.5) * nu;
   }
   CAPTURE(g, alpha);
   for (size_t l = 0; l < 3; ++l) CHECK(got[l] == Approx(want[l]).margin(2e-6));
 }
 
-// Against the converged columns. Seen, 64 directions: Fibonacci 2.7 %, 3.4 %, 2.8 % up to 2 km, horizon 2.8 %, 1.4 %, 2.7 %;
-// 256 directions: 0.8 %, 0.9 %, 0.8 % and 0.3 %, 0.1 %, 0.3 %. Higher up the horizon set is the worse one: the bright limb is
-// above the planet's edge, not at it. The bounds are a quarter wider.
+// Against the converged columns. Seen, 64 directions: Fibonacci 2.7 %, 3.4 %, 2.8 % up to 2 km, horizon 2.8 %, 1.4
+// %, 2.7 %; 256 directions: 0.8 %, 0.9 %, 0.8 % and 0.3 %, 0.1 %, 0.3 %. Higher up the horizon set is the worse one:
+// the bright limb is above the planet's edge, not at it. The bounds are a quarter wider.
 TEST_CASE("truth: second order and transfer and Psi against the converged ones") {
   REQUIRE(transfer_rows().size() == 64);
   struct Bound {
@@ -137,9 +144,11 @@ TEST_CASE("truth: second order and transfer and Psi against the converged ones")
     int directions;
     double altitude_km, second, transfer;
   };
-  const Bound bound = GENERATE(Bound{kFibonacci, 64, 2.0, 0.035, 0.043}, Bound{kHorizon, 64, 2.0, 0.035, 0.017}, Bound{kFibonacci, 256, 2.0, 0.01, 0.012},
-                               Bound{kHorizon, 256, 2.0, 0.004, 0.0012}, Bound{kFibonacci, 256, 90.0, 0.02, 0.012}, Bound{kHorizon, 256, 90.0, 0.07, 0.03});
-  const std::array<double, 3> worst = worst_of(errors_of_rows(bound.set, bound.directions, bound.directions == 64 ? 12 : 32), 90.0, bound.altitude_km);
+  const Bound bound = GENERATE(Bound{kFibonacci, 64, 2.0, 0.035, 0.043}, Bound{kHorizon, 64, 2.0, 0.035, 0.017},
+                               Bound{kFibonacci, 256, 2.0, 0.01, 0.012}, Bound{kHorizon, 256, 2.0, 0.004, 0.0012},
+                               Bound{kFibonacci, 256, 90.0, 0.02, 0.012}, Bound{kHorizon, 256, 90.0, 0.07, 0.03});
+  const std::array<double, 3> worst =
+      worst_of(errors_of_rows(bound.set, bound.directions, bound.directions == 64 ? 12 : 32), 90.0, bound.altitude_km);
   CAPTURE(bound.set, bound.directions, bound.altitude_km, worst[0], worst[1], worst[2]);
   CHECK(worst[0] < bound.second);
   CHECK(worst[1] < bound.transfer);

@@ -35,26 +35,38 @@ Scene orders_scene(const std::string& name) { return load_scene(name, app::scene
 
 std::vector<OrderRow> order_rows(const std::string& file) {
   const CsvTable table = read_csv(std::string(WELKIN_TEST_DATA "/") + file,
-                                  {"h_km", "view_zenith_deg", "sun_zenith_deg", "rel_azimuth_deg", "ground_albedo", "L1_quad", "L2", "Linf", "Linf_se"}, {"ray_end", "mie_phase", "channel"});
+                                  {"h_km", "view_zenith_deg", "sun_zenith_deg", "rel_azimuth_deg", "ground_albedo",
+                                   "L1_quad", "L2", "Linf", "Linf_se"},
+                                  {"ray_end", "mie_phase", "channel"});
   std::vector<OrderRow> rows;
   for (size_t i = 0; i < table.rows; ++i) {
     const auto at = [&](const char* name) { return table.column(name)[i]; };
     const std::string& channel = table.text("channel")[i];
     const double horizon_deg = 180.0 - std::asin(6360.0 / (6360.0 + at("h_km"))) * 180.0 / 3.14159265358979324;
-    rows.push_back({{at("h_km"), at("view_zenith_deg"), at("sun_zenith_deg"), at("rel_azimuth_deg")}, channel == "r" ? 0 : channel == "g" ? 1 : 2, at("ground_albedo"), at("L1_quad"),
-                    at("L2"), at("Linf"), at("Linf_se"), std::abs(at("view_zenith_deg") - horizon_deg) <= 0.5});
+    rows.push_back({{at("h_km"), at("view_zenith_deg"), at("sun_zenith_deg"), at("rel_azimuth_deg")},
+                    channel == "r"   ? 0
+                    : channel == "g" ? 1
+                                     : 2,
+                    at("ground_albedo"),
+                    at("L1_quad"),
+                    at("L2"),
+                    at("Linf"),
+                    at("Linf_se"),
+                    std::abs(at("view_zenith_deg") - horizon_deg) <= 0.5});
   }
   return rows;
 }
 
-std::vector<app::ProbeResult> sky_of(const Scene& scene, const Choices& choices, const std::vector<app::ProbeRay>& rays) {
+std::vector<app::ProbeResult> sky_of(const Scene& scene, const Choices& choices,
+                                     const std::vector<app::ProbeRay>& rays) {
   const Settings settings = settings_of(choices);
   const std::string no_fault;
   AllOrdersSky sky({device(), scene, settings, no_fault});
   return sky.probe(rays);
 }
 
-std::vector<double> sky_of_rows(const std::string& name, Phase phase, const Choices& choices, const std::vector<OrderRow>& rows) {
+std::vector<double> sky_of_rows(const std::string& name, Phase phase, const Choices& choices,
+                                const std::vector<OrderRow>& rows) {
   std::vector<double> got(rows.size());
   Scene scene = orders_scene(name);
   scene.medium("mie")->phase = phase;
@@ -83,12 +95,14 @@ std::vector<TableTexel> table_of(const Scene& scene, const Choices& choices) {
   graph.compile();
   execute_once(device(), graph);
   const gpu::Image& image = table.image();
-  const gpu::Buffer back = gpu::create_buffer(device(), "texels", size_t{16} * image.size.width * image.size.height, VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Where::readback);
+  const gpu::Buffer back = gpu::create_buffer(device(), "texels", size_t{16} * image.size.width * image.size.height,
+                                              VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Where::readback);
   const gpu::CommandPool pool = gpu::create_command_pool(device());
   gpu::run_once(device(), pool, [&](VkCommandBuffer commands) {
     gpu::image_barrier(commands, image.handle, gpu::kComputeWrite, gpu::kTransferRead);
     gpu::copy_image_to_buffer(commands, image, back);
-    gpu::buffer_barrier(commands, back.handle, {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT}, gpu::kHostRead);
+    gpu::buffer_barrier(commands, back.handle, {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT},
+                        gpu::kHostRead);
   });
   const uint32_t side = image.size.width;
   const bool published = image.size.height == side, logarithm = settings.choice("multiple_scattering.map") == "horizon";
@@ -96,11 +110,13 @@ std::vector<TableTexel> table_of(const Scene& scene, const Choices& choices) {
   for (uint32_t y = 0; y < side; ++y)
     for (uint32_t x = 0; x < side; ++x) {
       const double u = double(x) / (side - 1), v = double(y) / (side - 1), w = 2.0 * u - 1.0;
-      TableTexel texel{logarithm ? 0.4 * w / (1.4 - std::abs(w)) : w, (logarithm ? v * v : v) * (scene.planet.top_radius_km - scene.planet.ground_radius_km)};
+      TableTexel texel{logarithm ? 0.4 * w / (1.4 - std::abs(w)) : w,
+                       (logarithm ? v * v : v) * (scene.planet.top_radius_km - scene.planet.ground_radius_km)};
       for (int k = 0; k < 3; ++k) {
         const double stored = back.as<glm::vec4>()[y * side + x][k];
         texel.mean[k] = logarithm ? std::exp2(stored) : stored;
-        texel.irradiance[k] = 3.14159265358979324 * texel.mean[k] * (published ? 1.0 : back.as<glm::vec4>()[(y + 6 * side) * side + x][k]);
+        texel.irradiance[k] = 3.14159265358979324 * texel.mean[k] *
+                              (published ? 1.0 : back.as<glm::vec4>()[(y + 6 * side) * side + x][k]);
       }
       texels.push_back(texel);
     }
@@ -115,10 +131,12 @@ std::vector<Aureole> aureole(const std::string& name, const std::string& paths) 
   Settings settings(path_knobs());
   settings.set("probe.samples", paths);
   const std::string no_fault;
-  const std::vector<app::ProbeResult> truth = GroundTruth({device(), scene, settings, no_fault}).probe(rays), got = sky_of(scene, {}, rays);
+  const std::vector<app::ProbeResult> truth = GroundTruth({device(), scene, settings, no_fault}).probe(rays),
+                                      got = sky_of(scene, {}, rays);
   std::vector<Aureole> all;
   for (size_t i = 0; i < rays.size(); ++i)
-    all.push_back({angles_deg[i], got[i].radiance / truth[i].radiance - 1.0, truth[i].standard_error / truth[i].radiance});
+    all.push_back(
+        {angles_deg[i], got[i].radiance / truth[i].radiance - 1.0, truth[i].standard_error / truth[i].radiance});
   return all;
 }
 

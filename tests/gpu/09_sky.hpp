@@ -1,6 +1,6 @@
-// What chapter 09's tests share: the functions of tests/gpu/shaders/09_parts.comp, the chapter's own probe and table for a
-// scene and settings, and rows of the Monte Carlo tables. Units: km, degrees where a name says so, radiance per unit of
-// solar irradiance.
+// What chapter 09's tests share: the functions of tests/gpu/shaders/09_parts.comp, the chapter's own probe and table
+// for a scene and settings, and rows of the Monte Carlo tables. Units: km, degrees where a name says so, radiance per
+// unit of solar irradiance.
 #pragma once
 
 #include <array>
@@ -26,15 +26,17 @@ struct OrderRow {
   int channel = 0;
   double albedo = 0.0;
   double first = 0.0, second = 0.0, all = 0.0, all_error = 0.0;  // up to order 1, 2, infinity; one standard error
-  bool near_horizon = false;                                    // within 0.5 degrees of it
+  bool near_horizon = false;                                     // within 0.5 degrees of it
 };
 std::vector<OrderRow> order_rows(const std::string& file);
 
 // The chapter's radiance for each row.
-std::vector<double> sky_of_rows(const std::string& scene, Phase phase, const Choices& choices, const std::vector<OrderRow>& rows);
+std::vector<double> sky_of_rows(const std::string& scene, Phase phase, const Choices& choices,
+                                const std::vector<OrderRow>& rows);
 
 // Any scene, changed as one likes.
-std::vector<app::ProbeResult> sky_of(const Scene& scene, const Choices& choices, const std::vector<app::ProbeRay>& rays);
+std::vector<app::ProbeResult> sky_of(const Scene& scene, const Choices& choices,
+                                     const std::vector<app::ProbeRay>& rays);
 Scene orders_scene(const std::string& name);
 
 // The texels of the table: mean radiance J and the irradiance from above, in float.
@@ -52,8 +54,8 @@ struct OrderErrors {
 enum class Rows { all, target };  // target: sun above -4 degrees and not within 0.5 degrees of the horizon
 OrderErrors errors_of(const std::vector<OrderRow>& rows, const std::vector<double>& got, Rows which);
 
-// Relative errors of the sky above a sun 45 degrees high, 1 to 40 degrees from it, against so many of chapter 07's paths, and
-// one standard error of theirs.
+// Relative errors of the sky above a sun 45 degrees high, 1 to 40 degrees from it, against so many of chapter 07's
+// paths, and one standard error of theirs.
 struct Aureole {
   double angle_deg;
   glm::dvec3 error, noise;

@@ -1,7 +1,6 @@
-// The sky with all orders against Monte Carlo: tests/data/multiple_scattering_*.csv, every row whose standard error is below
-// 1 %. Bounds are what was seen plus a quarter, so that a step back is noticed.
+// The sky with all orders against Monte Carlo: tests/data/multiple_scattering_*.csv, every row whose standard error is
+// below 1 %. Bounds are what was seen plus a quarter, so that a step back is noticed.
 #include <catch2/catch.hpp>
-
 #include <cmath>
 
 #include "tests/gpu/09_sky.hpp"
@@ -12,7 +11,8 @@ using namespace welkin::test;
 namespace {
 
 const std::vector<OrderRow>& rows_of(int which) {
-  static const std::vector<OrderRow> rows[] = {order_rows("multiple_scattering_earth_cs.csv"), order_rows("multiple_scattering_earth_hg.csv"),
+  static const std::vector<OrderRow> rows[] = {order_rows("multiple_scattering_earth_cs.csv"),
+                                               order_rows("multiple_scattering_earth_hg.csv"),
                                                order_rows("multiple_scattering_alien_cs.csv")};
   return rows[which];
 }
@@ -26,7 +26,8 @@ std::vector<OrderRow> over_ground(int which, double albedo) {
 }
 
 std::vector<double> sky(int which, const Choices& choices, const std::vector<OrderRow>& rows) {
-  return sky_of_rows(which == 2 ? "alien" : "earth", which == 1 ? Phase::henyey_greenstein : Phase::cornette_shanks, choices, rows);
+  return sky_of_rows(which == 2 ? "alien" : "earth", which == 1 ? Phase::henyey_greenstein : Phase::cornette_shanks,
+                     choices, rows);
 }
 
 }  // namespace
@@ -37,16 +38,17 @@ TEST_CASE("truth: the tables of all orders are whole") {
   CHECK(rows_of(2).size() == 216);
 }
 
-// The target: Earth, sun above -4 degrees, rays more than 0.5 degrees from the horizon: median 2 %, 95th percentile 6 %.
-// Seen: 0.28 % and 3.0 % over black ground, 0.23 % and 2.1 % over grey. All rows, those along the horizon and deep in the dusk,
-// too: 8.7 % over black ground, where what the aerosol sends ahead is taken to come from straight ahead and half of it
-// comes from below (with 64 directions of the horizon's set, at eight times the work, 7.9 %).
+// The target: Earth, sun above -4 degrees, rays more than 0.5 degrees from the horizon: median 2 %, 95th percentile 6
+// %. Seen: 0.28 % and 3.0 % over black ground, 0.23 % and 2.1 % over grey. All rows, those along the horizon and deep
+// in the dusk, too: 8.7 % over black ground, where what the aerosol sends ahead is taken to come from straight ahead
+// and half of it comes from below (with 64 directions of the horizon's set, at eight times the work, 7.9 %).
 TEST_CASE("truth: all orders on Earth") {
   const auto [which, albedo] = GENERATE(table<int, double>({{0, 0.0}, {0, 0.3}, {1, 0.3}}));
   const std::vector<OrderRow> rows = over_ground(which, albedo);
   const std::vector<double> got = sky(which, {}, rows);
   const OrderErrors target = errors_of(rows, got, Rows::target), all = errors_of(rows, got, Rows::all);
-  CAPTURE(which, albedo, target.values.size(), all.values.size(), target.quantile(0.5), target.quantile(0.95), target.quantile(1.0), all.quantile(0.5), all.quantile(0.95), all.quantile(1.0));
+  CAPTURE(which, albedo, target.values.size(), all.values.size(), target.quantile(0.5), target.quantile(0.95),
+          target.quantile(1.0), all.quantile(0.5), all.quantile(0.95), all.quantile(1.0));
   CHECK(target.values.size() > (which == 0 ? 250u : 80u));
   CHECK(target.quantile(0.5) < 0.004);
   CHECK(target.quantile(0.95) < 0.035);
@@ -57,7 +59,8 @@ TEST_CASE("truth: all orders on the dense planet") {
   const std::vector<OrderRow> rows = over_ground(2, 0.3);
   const std::vector<double> got = sky(2, {}, rows);
   const OrderErrors target = errors_of(rows, got, Rows::target), all = errors_of(rows, got, Rows::all);
-  CAPTURE(target.values.size(), target.quantile(0.5), target.quantile(0.95), target.quantile(1.0), all.quantile(0.95), all.quantile(1.0));
+  CAPTURE(target.values.size(), target.quantile(0.5), target.quantile(0.95), target.quantile(1.0), all.quantile(0.95),
+          all.quantile(1.0));
   CHECK(target.values.size() > 50);
   CHECK(target.quantile(0.5) < 0.01);
   CHECK(target.quantile(0.95) < 0.04);
@@ -68,7 +71,9 @@ TEST_CASE("truth: all orders on the dense planet") {
 // What the method as it was published reaches, and that the rungs beyond it more than halve the worst error.
 TEST_CASE("truth: the rungs beyond the published method") {
   const std::vector<OrderRow> rows = over_ground(2, 0.3);
-  const auto worst = [&](const char* method) { return errors_of(rows, sky(2, {{"multiple_scattering.method", method}}, rows), Rows::target).quantile(1.0); };
+  const auto worst = [&](const char* method) {
+    return errors_of(rows, sky(2, {{"multiple_scattering.method", method}}, rows), Rows::target).quantile(1.0);
+  };
   const double published = worst("published"), isotropic = worst("isotropic"), moments = worst("moments");
   CAPTURE(published, isotropic, moments);
   CHECK(published > 0.9);

@@ -25,7 +25,8 @@ struct Answer {
 
 std::vector<Answer> ask(const std::vector<Query>& queries) {
   const float* first = &queries.front().altitude;
-  const std::vector<float> out = evaluate("tests/10_map.comp", std::vector<float>(first, first + 12 * queries.size()), 12, 9);
+  const std::vector<float> out =
+      evaluate("tests/10_map.comp", std::vector<float>(first, first + 12 * queries.size()), 12, 9);
   std::vector<Answer> answers(queries.size());
   std::copy(out.begin(), out.end(), &answers.front().across);
   return answers;
@@ -47,12 +48,21 @@ TEST_CASE("10 map: a direction's place is what trigonometry in double says") {
     const double h = static_cast<float>(altitude_of(random, i));
     // Half of the views are close to the horizon: 1e-7 to 1e-1 rad from it, on both sides.
     double zenith = std::acos(random.uniform(-1.0, 1.0));
-    if (i % 2) zenith = std::clamp(horizon_zenith(h) + (random.next() % 2 ? 1 : -1) * random.log_uniform(1e-7, 0.1), 0.0, kPi);
-    const double azimuth = random.uniform(-kPi, kPi), sun_zenith = std::acos(random.uniform(-1.0, 1.0)), sun_azimuth = random.uniform(-kPi, kPi);
-    queries.push_back({static_cast<float>(h), static_cast<float>(kRadius_km),
-                       {static_cast<float>(std::sin(zenith) * std::cos(azimuth)), static_cast<float>(std::sin(zenith) * std::sin(azimuth)), static_cast<float>(std::cos(zenith))},
-                       {static_cast<float>(std::sin(sun_zenith) * std::cos(sun_azimuth)), static_cast<float>(std::sin(sun_zenith) * std::sin(sun_azimuth)), static_cast<float>(std::cos(sun_zenith))},
-                       192, 108, 0, 0});
+    if (i % 2)
+      zenith = std::clamp(horizon_zenith(h) + (random.next() % 2 ? 1 : -1) * random.log_uniform(1e-7, 0.1), 0.0, kPi);
+    const double azimuth = random.uniform(-kPi, kPi), sun_zenith = std::acos(random.uniform(-1.0, 1.0)),
+                 sun_azimuth = random.uniform(-kPi, kPi);
+    queries.push_back(
+        {static_cast<float>(h),
+         static_cast<float>(kRadius_km),
+         {static_cast<float>(std::sin(zenith) * std::cos(azimuth)),
+          static_cast<float>(std::sin(zenith) * std::sin(azimuth)), static_cast<float>(std::cos(zenith))},
+         {static_cast<float>(std::sin(sun_zenith) * std::cos(sun_azimuth)),
+          static_cast<float>(std::sin(sun_zenith) * std::sin(sun_azimuth)), static_cast<float>(std::cos(sun_zenith))},
+         192,
+         108,
+         0,
+         0});
   }
   const std::vector<Answer> answers = ask(queries);
   double worst_angle = 0.0, worst_across = 0.0;
@@ -64,7 +74,8 @@ TEST_CASE("10 map: a direction's place is what trigonometry in double says") {
     const bool below = answers[i].below > 0.5f;
     const double range = below ? kPi - horizon : horizon;
     // Back from the table's coordinate to an angle: 2 atan(s^2 tan(range / 2)).
-    const double angle = 2.0 * std::atan(double{answers[i].from_horizon} * answers[i].from_horizon * std::tan(0.5 * range));
+    const double angle =
+        2.0 * std::atan(double{answers[i].from_horizon} * answers[i].from_horizon * std::tan(0.5 * range));
     worst_angle = std::max(worst_angle, std::abs(angle - std::abs(from)));
     if (below != (from < 0.0) && std::abs(from) > 3e-7) ++wrong_side;
     if (std::hypot(q.view[0], q.view[1]) > 1e-3 && std::hypot(q.sun[0], q.sun[1]) > 1e-3) {
@@ -74,7 +85,8 @@ TEST_CASE("10 map: a direction's place is what trigonometry in double says") {
   }
   CAPTURE(worst_angle, worst_across);
   CHECK(wrong_side == 0);  // the horizon is where it is to 3e-7 rad, the rounding of a direction
-  // Float32 directions: a few units of 6e-8, times the range's tangent near the zenith seen from 36 000 km (a factor 13).
+  // Float32 directions: a few units of 6e-8, times the range's tangent near the zenith seen from 36 000 km (a factor
+  // 13).
   CHECK(worst_angle < 2e-6);
   CHECK(worst_across < 1e-6);
 }
@@ -85,8 +97,13 @@ TEST_CASE("10 map: texel to direction and back is the texel's centre") {
   for (size_t i = 0; i < 200000; ++i) {
     const int sizes[][2] = {{96, 54}, {192, 108}, {384, 216}, {2, 4}, {17, 6}};
     const int* size = sizes[random.next() % 5];
-    queries.push_back({static_cast<float>(altitude_of(random, i)), static_cast<float>(kRadius_km), {0, 0, 1}, {1, 0, 0},
-                       static_cast<float>(size[0]), static_cast<float>(size[1]), static_cast<float>(random.next() % static_cast<uint32_t>(size[0])),
+    queries.push_back({static_cast<float>(altitude_of(random, i)),
+                       static_cast<float>(kRadius_km),
+                       {0, 0, 1},
+                       {1, 0, 0},
+                       static_cast<float>(size[0]),
+                       static_cast<float>(size[1]),
+                       static_cast<float>(random.next() % static_cast<uint32_t>(size[0])),
                        static_cast<float>(random.next() % static_cast<uint32_t>(size[1]))});
   }
   const std::vector<Answer> answers = ask(queries);

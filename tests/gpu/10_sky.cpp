@@ -15,7 +15,8 @@ constexpr double kDegree = 3.14159265358979323846 / 180.0;
 
 }  // namespace
 
-std::vector<app::ProbeResult> view_of(const Scene& scene, const Choices& choices, const std::vector<app::ProbeRay>& rays) {
+std::vector<app::ProbeResult> view_of(const Scene& scene, const Choices& choices,
+                                      const std::vector<app::ProbeRay>& rays) {
   Settings settings(sky_knobs());
   for (const auto& [name, text] : choices) settings.set(name, text);
   const std::string no_fault;
@@ -26,13 +27,16 @@ std::vector<app::ProbeResult> view_of(const Scene& scene, const Choices& choices
 std::vector<double> differences(const std::vector<app::ProbeRay>& rays, const std::vector<app::ProbeResult>& ours,
                                 const std::vector<app::ProbeResult>& theirs, double least) {
   std::map<std::pair<double, double>, double> brightest;
-  const auto brightest_of = [&](size_t i) -> double& { return brightest[{rays[i].altitude_km, rays[i].sun_zenith_deg}]; };
+  const auto brightest_of = [&](size_t i) -> double& {
+    return brightest[{rays[i].altitude_km, rays[i].sun_zenith_deg}];
+  };
   for (size_t i = 0; i < rays.size(); ++i)
     for (int c = 0; c < 3; ++c) brightest_of(i) = std::max(brightest_of(i), theirs[i].radiance[c]);
   std::vector<double> values;
   for (size_t i = 0; i < rays.size(); ++i)
     for (int c = 0; c < 3; ++c)
-      if (theirs[i].radiance[c] > least * brightest_of(i)) values.push_back(std::abs(ours[i].radiance[c] / theirs[i].radiance[c] - 1.0));
+      if (theirs[i].radiance[c] > least * brightest_of(i))
+        values.push_back(std::abs(ours[i].radiance[c] / theirs[i].radiance[c] - 1.0));
   std::sort(values.begin(), values.end());
   return values;
 }
@@ -41,7 +45,8 @@ double quantile(const std::vector<double>& sorted, double share) {
   return sorted.at(std::min(sorted.size() - 1, static_cast<size_t>(share * static_cast<double>(sorted.size()))));
 }
 
-std::vector<app::ProbeRay> rays_from(const std::vector<double>& altitudes_km, const std::vector<double>& suns_deg, size_t of_each, uint64_t seed) {
+std::vector<app::ProbeRay> rays_from(const std::vector<double>& altitudes_km, const std::vector<double>& suns_deg,
+                                     size_t of_each, uint64_t seed) {
   Random random(seed);
   std::vector<app::ProbeRay> rays;
   for (const double h : altitudes_km)

@@ -7,7 +7,8 @@
 
 namespace welkin::test {
 
-std::vector<app::ProbeResult> view_of(const Scene& scene, const Choices& choices, const std::vector<app::ProbeRay>& rays);
+std::vector<app::ProbeResult> view_of(const Scene& scene, const Choices& choices,
+                                      const std::vector<app::ProbeRay>& rays);
 
 // Relative differences per channel of two answers to the same rays, where the second is above `least` of its group's
 // brightest: rays that share altitude and sun. In order of size.
@@ -16,6 +17,7 @@ std::vector<double> differences(const std::vector<app::ProbeRay>& rays, const st
 double quantile(const std::vector<double>& sorted, double share);
 
 // Rays of every kind from these altitudes and suns: anywhere, close to the horizon on both sides, close to the sun.
-std::vector<app::ProbeRay> rays_from(const std::vector<double>& altitudes_km, const std::vector<double>& suns_deg, size_t of_each, uint64_t seed);
+std::vector<app::ProbeRay> rays_from(const std::vector<double>& altitudes_km, const std::vector<double>& suns_deg,
+                                     size_t of_each, uint64_t seed);
 
 }  // namespace welkin::test

@@ -1,9 +1,10 @@
 // Chapter 10 where a table of directions breaks: the sun overhead, the horizon's line, the sun's azimuth, the zenith, a
 // night in 16 bits, the view from space; and what has to run again in a frame.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <fmt/format.h>
 #include <glm/gtc/packing.hpp>
 
 #include "chapters/10_sky_view_lut/sky.hpp"
@@ -18,7 +19,8 @@ namespace {
 
 const Choices kTable{{"sky_view.method", "table"}};
 // Where the map is in question, and not what chapter 09 puts into it.
-const Choices kQuick{{"sky_view.method", "table"}, {"multiple_scattering.method", "published"}, {"sky_view.size", "96x54"}};
+const Choices kQuick{
+    {"sky_view.method", "table"}, {"multiple_scattering.method", "published"}, {"sky_view.size", "96x54"}};
 
 double relative(double a, double b) { return std::abs(a / b - 1.0); }
 
@@ -44,12 +46,15 @@ TEST_CASE("10 hard: the horizon is a line, not a band") {
   for (const double altitude : {0.0005, 0.002, 1.0, 10.0})
     for (const double sun : {60.0, 91.0})
       for (const double off : {-0.2, -0.05, -0.01, -0.003, 0.003, 0.01, 0.05, 0.2}) {
-        rays.push_back({altitude, 180.0 - std::asin(6360.0 / (6360.0 + altitude)) * 57.29577951308232 + off, sun, 40.0});
+        rays.push_back(
+            {altitude, 180.0 - std::asin(6360.0 / (6360.0 + altitude)) * 57.29577951308232 + off, sun, 40.0});
         below_horizon_deg.push_back(off);
       }
-  const std::vector<app::ProbeResult> table = view_of(orders_scene("earth"), kTable, rays), march = view_of(orders_scene("earth"), {{"sky_view.method", "march"}}, rays);
+  const std::vector<app::ProbeResult> table = view_of(orders_scene("earth"), kTable, rays),
+                                      march = view_of(orders_scene("earth"), {{"sky_view.method", "march"}}, rays);
   for (size_t i = 0; i < rays.size(); ++i) {
-    CAPTURE(rays[i].altitude_km, rays[i].sun_zenith_deg, below_horizon_deg[i], table[i].radiance.g, march[i].radiance.g);
+    CAPTURE(rays[i].altitude_km, rays[i].sun_zenith_deg, below_horizon_deg[i], table[i].radiance.g,
+            march[i].radiance.g);
     // Just below the horizon a ray's length changes by half within a row of the table; above it nothing does.
     CHECK(relative(table[i].radiance.g, march[i].radiance.g) < (below_horizon_deg[i] < 0.0 ? 0.02 : 0.1));
   }
@@ -64,7 +69,8 @@ TEST_CASE("10 hard: no seam at the sun's azimuth, opposite it, or at the zenith"
     for (int i = -kReach; i <= kReach; ++i) rays.push_back({0.002, 75.0, sun, 180.0 + 0.7 * i});
     for (int i = -kReach; i <= kReach; ++i) rays.push_back({0.002, std::abs(0.7 * i), sun, i < 0 ? 120.0 : -60.0});
   }
-  const std::vector<app::ProbeResult> light = view_of(orders_scene("earth"), {{"sky_view.method", "table"}, {"multiple_scattering.method", "published"}}, rays);
+  const std::vector<app::ProbeResult> light =
+      view_of(orders_scene("earth"), {{"sky_view.method", "table"}, {"multiple_scattering.method", "published"}}, rays);
   for (size_t line = 0; line < rays.size(); line += kLine) {
     double at_seam = 0.0, elsewhere = 0.0;
     for (int i = 1; i + 1 < kLine; ++i) {
@@ -83,11 +89,14 @@ TEST_CASE("10 hard: a night keeps its digits in 16 bits") {
   const std::vector<app::ProbeRay> rays = rays_from({0.002}, {100.0, 104.0}, 60, 103);
   const Scene scene = orders_scene("earth");
   const std::vector<app::ProbeResult> whole = view_of(scene, kTable, rays);
-  const std::vector<app::ProbeResult> half = view_of(scene, {{"sky_view.method", "table"}, {"sky_view.format", "half"}}, rays);
+  const std::vector<app::ProbeResult> half =
+      view_of(scene, {{"sky_view.method", "table"}, {"sky_view.format", "half"}}, rays);
   const std::vector<double> errors = differences(rays, half, whole, 1e-2);
   double naive = 0.0;  // the same radiances in 16 bits as they are
   for (const app::ProbeResult& light : whole)
-    if (light.radiance.g > 1e-9) naive = std::max(naive, relative(glm::unpackHalf1x16(glm::packHalf1x16(static_cast<float>(light.radiance.g))), light.radiance.g));
+    if (light.radiance.g > 1e-9)
+      naive = std::max(naive, relative(glm::unpackHalf1x16(glm::packHalf1x16(static_cast<float>(light.radiance.g))),
+                                       light.radiance.g));
   CAPTURE(quantile(errors, 1.0), naive);
   CHECK(quantile(errors, 1.0) < 5e-3);
   CHECK(naive > 0.1);
@@ -100,14 +109,20 @@ TEST_CASE("10 hard: from space the table fails, and is not asked") {
   for (app::ProbeRay& ray : above) ray.altitude_km = 20.001;
   all.insert(all.end(), below.begin(), below.end());
   all.insert(all.end(), above.begin(), above.end());
-  const std::vector<app::ProbeResult> march = view_of(scene, {{"sky_view.method", "march"}}, rays), light = view_of(scene, {}, all);
-  const auto part = [&](size_t first, size_t count) { return std::vector<app::ProbeResult>(light.begin() + static_cast<long>(first), light.begin() + static_cast<long>(first + count)); };
-  const std::vector<double> table = differences(rays, view_of(scene, kTable, rays), march), automatic = differences(rays, part(0, rays.size()), march);
+  const std::vector<app::ProbeResult> march = view_of(scene, {{"sky_view.method", "march"}}, rays),
+                                      light = view_of(scene, {}, all);
+  const auto part = [&](size_t first, size_t count) {
+    return std::vector<app::ProbeResult>(light.begin() + static_cast<long>(first),
+                                         light.begin() + static_cast<long>(first + count));
+  };
+  const std::vector<double> table = differences(rays, view_of(scene, kTable, rays), march),
+                            automatic = differences(rays, part(0, rays.size()), march);
   CAPTURE(quantile(table, 0.95), quantile(table, 1.0));
   CHECK(quantile(table, 1.0) > 0.5);
   CHECK(quantile(automatic, 1.0) == 0.0);
   // Where it changes from one to the other nothing is to be seen.
-  const std::vector<double> step = differences(below, part(rays.size() + below.size(), above.size()), part(rays.size(), below.size()));
+  const std::vector<double> step =
+      differences(below, part(rays.size() + below.size(), above.size()), part(rays.size(), below.size()));
   CAPTURE(quantile(step, 0.5), quantile(step, 0.95));
   CHECK(quantile(step, 0.5) < 2e-3);
   CHECK(quantile(step, 0.95) < 0.02);
@@ -120,7 +135,8 @@ TEST_CASE("10 hard: nothing that is not a number, from anywhere") {
     for (const double sun : {0.0, 90.0, 180.0})
       for (int i = 0; i < 80; ++i) {
         const double edges[] = {0.0, 90.0, 180.0, 89.999999, 90.000001};
-        rays.push_back({altitude, i % 2 ? edges[random.next() % 5] : random.uniform(0.0, 180.0), sun, random.uniform(-180.0, 180.0)});
+        rays.push_back({altitude, i % 2 ? edges[random.next() % 5] : random.uniform(0.0, 180.0), sun,
+                        random.uniform(-180.0, 180.0)});
       }
   for (const char* name : {"earth", "alien"})
     for (const app::ProbeResult& light : view_of(orders_scene(name), kQuick, rays))
@@ -148,7 +164,8 @@ TEST_CASE("10 hard: only what changed runs again") {
   };
   const auto frame = [&](uint32_t index) { renderer.draw(pose, 0.0, 1, index); };
   frame(0), frame(1);
-  CHECK((runs("air") == 1 && runs("transmittance") == 1 && runs("multiple scattering") == 1 && runs("sky view") == 1 && runs("sky") == 2));
+  CHECK((runs("air") == 1 && runs("transmittance") == 1 && runs("multiple scattering") == 1 && runs("sky view") == 1 &&
+         runs("sky") == 2));
   pose.azimuth_deg += 30.0;  // looking elsewhere
   frame(2);
   scene.sun.azimuth_deg += 50.0;  // the table turns with the sun

@@ -1,5 +1,5 @@
-// The sky from the table against Monte Carlo (tests/data/multiple_scattering_*.csv), and against the march it was filled
-// by. Bounds are what was seen and a quarter more, unless a reason stands beside them.
+// The sky from the table against Monte Carlo (tests/data/multiple_scattering_*.csv), and against the march it was
+// filled by. Bounds are what was seen and a quarter more, unless a reason stands beside them.
 #include <catch2/catch.hpp>
 
 #include "tests/gpu/10_sky.hpp"
@@ -17,7 +17,8 @@ std::vector<OrderRow> rows_over_ground(const std::string& file) {
   return rows;
 }
 
-std::vector<double> looked_up(const std::string& scene_name, Phase phase, const std::vector<OrderRow>& rows, const Choices& choices = {}) {
+std::vector<double> looked_up(const std::string& scene_name, Phase phase, const std::vector<OrderRow>& rows,
+                              const Choices& choices = {}) {
   Scene scene = orders_scene(scene_name);
   scene.medium("mie")->phase = phase;
   scene.planet.ground_albedo = glm::dvec3(0.3);
@@ -35,8 +36,10 @@ std::vector<double> looked_up(const std::string& scene_name, Phase phase, const 
 // percentile 6 %. It is met by a wide margin, and the bounds keep the margin.
 TEST_CASE("10 truth: the looked-up sky of Earth against Monte Carlo") {
   for (const bool cornette : {true, false}) {
-    const std::vector<OrderRow> rows = rows_over_ground(cornette ? "multiple_scattering_earth_cs.csv" : "multiple_scattering_earth_hg.csv");
-    const OrderErrors errors = errors_of(rows, looked_up("earth", cornette ? Phase::cornette_shanks : Phase::henyey_greenstein, rows), Rows::target);
+    const std::vector<OrderRow> rows =
+        rows_over_ground(cornette ? "multiple_scattering_earth_cs.csv" : "multiple_scattering_earth_hg.csv");
+    const OrderErrors errors = errors_of(
+        rows, looked_up("earth", cornette ? Phase::cornette_shanks : Phase::henyey_greenstein, rows), Rows::target);
     CAPTURE(cornette, errors.values.size(), errors.quantile(0.5), errors.quantile(0.95), errors.quantile(1.0));
     CHECK(errors.values.size() > (cornette ? 250u : 80u));
     CHECK(errors.quantile(0.5) < 0.006);
@@ -58,14 +61,21 @@ TEST_CASE("10 truth: the table converges to the march it was filled by, with the
   const std::vector<app::ProbeRay> rays = rays_from({0.002, 1.0, 10.0}, {20.0, 80.0, 91.0, 97.0}, 60, 101);
   const std::vector<app::ProbeResult> march = view_of(scene, {{"sky_view.method", "march"}}, rays);
   const auto errors = [&](const char* size, const char* format) {
-    return differences(rays, view_of(scene, {{"sky_view.method", "table"}, {"sky_view.size", size}, {"sky_view.format", format}}, rays), march);
+    return differences(
+        rays,
+        view_of(scene, {{"sky_view.method", "table"}, {"sky_view.size", size}, {"sky_view.format", format}}, rays),
+        march);
   };
-  const std::vector<double> coarse = errors("96x54", "float"), standard = errors("192x108", "float"), fine = errors("384x216", "float");
-  CAPTURE(quantile(coarse, 0.95), quantile(standard, 0.5), quantile(standard, 0.95), quantile(standard, 0.99), quantile(standard, 1.0), quantile(fine, 0.95));
+  const std::vector<double> coarse = errors("96x54", "float"), standard = errors("192x108", "float"),
+                            fine = errors("384x216", "float");
+  CAPTURE(quantile(coarse, 0.95), quantile(standard, 0.5), quantile(standard, 0.95), quantile(standard, 0.99),
+          quantile(standard, 1.0), quantile(fine, 0.95));
   CHECK(quantile(standard, 0.5) < 1e-3);
   CHECK(quantile(standard, 0.95) < 0.01);
-  CHECK(quantile(standard, 0.99) < 0.025);  // the worst is 0.25, where the sun rises on ground a few rows below the horizon
-  // Linear interpolation errs with the square of the distance: twice the texels, a quarter, and some room for the tails.
+  CHECK(quantile(standard, 0.99) <
+        0.025);  // the worst is 0.25, where the sun rises on ground a few rows below the horizon
+  // Linear interpolation errs with the square of the distance: twice the texels, a quarter, and some room for the
+  // tails.
   CHECK(quantile(standard, 0.95) < 0.4 * quantile(coarse, 0.95));
   CHECK(quantile(fine, 0.95) < 0.4 * quantile(standard, 0.95));
 }

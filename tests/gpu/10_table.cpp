@@ -23,7 +23,8 @@ std::string directory() {
 }
 
 std::vector<std::string> comments(const std::string& what) {
-  return {what, "device: " + device().candidate().name, "driver: " + device().candidate().driver, "source: WELKIN_TABLE=docs/generated gpu_tests \"[10_table]\""};
+  return {what, "device: " + device().candidate().name, "driver: " + device().candidate().driver,
+          "source: WELKIN_TABLE=docs/generated gpu_tests \"[10_table]\""};
 }
 
 }  // namespace
@@ -36,17 +37,24 @@ TEST_CASE("table of errors by altitude", "[.][10_table]") {
     const std::vector<app::ProbeRay> rays = rays_from({altitude}, {20.0, 80.0, 91.0, 97.0}, 160, 110);
     const std::vector<app::ProbeResult> march = view_of(scene, {{"sky_view.method", "march"}}, rays);
     for (const char* size : {"96x54", "192x108", "384x216"}) {
-      const std::vector<double> errors = differences(rays, view_of(scene, {{"sky_view.method", "table"}, {"sky_view.size", size}}, rays), march);
-      rows.push_back({fmt::format("{:g}", altitude), size, fmt::format("{:.2g}", quantile(errors, 0.5)), fmt::format("{:.2g}", quantile(errors, 0.95)), fmt::format("{:.2g}", quantile(errors, 0.99))});
+      const std::vector<double> errors =
+          differences(rays, view_of(scene, {{"sky_view.method", "table"}, {"sky_view.size", size}}, rays), march);
+      rows.push_back({fmt::format("{:g}", altitude), size, fmt::format("{:.2g}", quantile(errors, 0.5)),
+                      fmt::format("{:.2g}", quantile(errors, 0.95)), fmt::format("{:.2g}", quantile(errors, 0.99))});
     }
   }
-  write_csv(directory() + "/10_altitudes.csv", comments("relative difference of the table's sky from the direct march: 4 suns (20, 80, 91, 97 degrees) x 160 rays, half of them close to the horizon, a quarter close to the sun"), {"altitude_km", "size", "median", "p95", "p99"}, rows);
-
+  write_csv(directory() + "/10_altitudes.csv",
+            comments("relative difference of the table's sky from the direct march: 4 suns (20, 80, 91, 97 degrees) x "
+                     "160 rays, half of them close to the horizon, a quarter close to the sun"),
+            {"altitude_km", "size", "median", "p95", "p99"}, rows);
 }
 
 TEST_CASE("table of errors against Monte Carlo", "[.][10_table]") {
   std::vector<std::vector<std::string>> rows;
-  for (const auto& [file, name, phase] : {std::tuple{"multiple_scattering_earth_cs.csv", "earth", Phase::cornette_shanks}, {"multiple_scattering_earth_hg.csv", "earth", Phase::henyey_greenstein}, {"multiple_scattering_alien_cs.csv", "alien", Phase::cornette_shanks}})
+  for (const auto& [file, name, phase] :
+       {std::tuple{"multiple_scattering_earth_cs.csv", "earth", Phase::cornette_shanks},
+        {"multiple_scattering_earth_hg.csv", "earth", Phase::henyey_greenstein},
+        {"multiple_scattering_alien_cs.csv", "alien", Phase::cornette_shanks}})
     for (const char* method : {"auto", "march"}) {
       std::vector<OrderRow> over_ground;
       for (const OrderRow& row : order_rows(file))
@@ -60,11 +68,18 @@ TEST_CASE("table of errors against Monte Carlo", "[.][10_table]") {
       for (size_t i = 0; i < over_ground.size(); ++i) got.push_back(light[i].radiance[over_ground[i].channel]);
       for (const Rows which : {Rows::target, Rows::all}) {
         const OrderErrors errors = errors_of(over_ground, got, which);
-        rows.push_back({std::string(name) + (phase == Phase::cornette_shanks ? " (Cornette-Shanks)" : " (Henyey-Greenstein)"), which == Rows::target ? "target" : "all", method, std::to_string(errors.values.size()),
-                        fmt::format("{:.2g}", errors.quantile(0.5)), fmt::format("{:.2g}", errors.quantile(0.95)), fmt::format("{:.2g}", errors.quantile(1.0))});
+        rows.push_back(
+            {std::string(name) + (phase == Phase::cornette_shanks ? " (Cornette-Shanks)" : " (Henyey-Greenstein)"),
+             which == Rows::target ? "target" : "all", method, std::to_string(errors.values.size()),
+             fmt::format("{:.2g}", errors.quantile(0.5)), fmt::format("{:.2g}", errors.quantile(0.95)),
+             fmt::format("{:.2g}", errors.quantile(1.0))});
       }
     }
-  write_csv(directory() + "/10_monte_carlo.csv", comments("relative error against Monte Carlo, tests/data/multiple_scattering_*.csv, ground albedo 0.3, rows with a standard error below 1 %; target: sun above -4 degrees, rays more than 0.5 degrees from the horizon"), {"planet", "rows", "method", "count", "median", "p95", "worst"}, rows);
+  write_csv(
+      directory() + "/10_monte_carlo.csv",
+      comments("relative error against Monte Carlo, tests/data/multiple_scattering_*.csv, ground albedo 0.3, rows with "
+               "a standard error below 1 %; target: sun above -4 degrees, rays more than 0.5 degrees from the horizon"),
+      {"planet", "rows", "method", "count", "median", "p95", "worst"}, rows);
 }
 
 TEST_CASE("table of errors by the samples along a texel's ray", "[.][10_table]") {
@@ -86,6 +101,10 @@ TEST_CASE("table of errors by the samples along a texel's ray", "[.][10_table]")
     }
     lines.push_back(line);
   }
-  write_csv(directory() + "/10_steps.csv", comments("relative error in percent of the sky by samples of the first order along a texel's ray: rows of tests/data/multiple_scattering_*_cs.csv as in 10_monte_carlo.csv, target"),
-            {"steps", "median_percent_earth", "p95_percent_earth", "worst_percent_earth", "median_percent_alien", "p95_percent_alien", "worst_percent_alien"}, lines);
+  write_csv(directory() + "/10_steps.csv",
+            comments("relative error in percent of the sky by samples of the first order along a texel's ray: rows of "
+                     "tests/data/multiple_scattering_*_cs.csv as in 10_monte_carlo.csv, target"),
+            {"steps", "median_percent_earth", "p95_percent_earth", "worst_percent_earth", "median_percent_alien",
+             "p95_percent_alien", "worst_percent_alien"},
+            lines);
 }

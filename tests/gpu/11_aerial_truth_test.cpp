@@ -41,7 +41,8 @@ std::vector<Score> scores(const reference::Planet& planet, const std::vector<std
   const auto list = cases();
   std::vector<AirItem> items;
   for (const auto& [slices, samples] : marches)
-    for (const auto& [ray, d] : list) items.push_back(item_of(AirPart::march, ray, {d, double(slices), double(samples)}, 2.0));
+    for (const auto& [ray, d] : list)
+      items.push_back(item_of(AirPart::march, ray, {d, double(slices), double(samples)}, 2.0));
   const std::vector<AirAnswer> answers = evaluate_air(planet, items);
   std::vector<Score> worst(marches.size());
   for (size_t i = 0; i < list.size(); ++i) {
@@ -49,8 +50,10 @@ std::vector<Score> scores(const reference::Planet& planet, const std::vector<std
     for (size_t m = 0; m < marches.size(); ++m)
       for (int k = 0; k < 3; ++k) {
         const AirAnswer& answer = answers[m * list.size() + i];
-        if (truth.radiance[k] > 1e-7) worst[m].radiance = std::max(worst[m].radiance, std::abs(answer.radiance[k] / truth.radiance[k] - 1.0));
-        worst[m].transmittance = std::max(worst[m].transmittance, std::abs(answer.transmittance[k] - truth.transmittance[k]));
+        if (truth.radiance[k] > 1e-7)
+          worst[m].radiance = std::max(worst[m].radiance, std::abs(answer.radiance[k] / truth.radiance[k] - 1.0));
+        worst[m].transmittance =
+            std::max(worst[m].transmittance, std::abs(answer.transmittance[k] - truth.transmittance[k]));
       }
   }
   return worst;
@@ -89,7 +92,8 @@ TEST_CASE("truth: no segment is lost at the end") {
     }
 }
 
-// Errors of the first slice of a given length at places x in it; and of what its nearest texel holds, which a sampler gives.
+// Errors of the first slice of a given length at places x in it; and of what its nearest texel holds, which a sampler
+// gives.
 struct FirstSlice {
   double radiance = 0.0, transmittance = 0.0, sampler = 0.0;
 };
@@ -112,9 +116,11 @@ FirstSlice first_slice(const reference::Planet& planet, double length_km) {
       // The truth is a difference of two quadratures of 1e-8: with less light than this it has no digits left.
       if (truths[i].radiance[k] > 3e-6) {
         worst.radiance = std::max(worst.radiance, std::abs(answers[i].radiance[k] / truths[i].radiance[k] - 1.0));
-        worst.sampler = std::max(worst.sampler, std::abs(answers[truths.size() + i].radiance[k] / truths[i].radiance[k] - 1.0));
+        worst.sampler =
+            std::max(worst.sampler, std::abs(answers[truths.size() + i].radiance[k] / truths[i].radiance[k] - 1.0));
       }
-      worst.transmittance = std::max(worst.transmittance, std::abs(answers[i].transmittance[k] - truths[i].transmittance[k]));
+      worst.transmittance =
+          std::max(worst.transmittance, std::abs(answers[i].transmittance[k] - truths[i].transmittance[k]));
     }
   return worst;
 }
@@ -124,8 +130,9 @@ TEST_CASE("truth: anywhere inside the first slice") {
   for (const bool dense : {false, true}) {
     const reference::Planet planet = dense ? reference::dense_alien() : reference::earth();
     const FirstSlice standard = first_slice(planet, 0.125), linear = first_slice(planet, 4.0);
-    CAPTURE(dense, standard.radiance, standard.transmittance, standard.sampler, linear.radiance, linear.transmittance, linear.sampler);
-    CHECK(standard.radiance < 0.01);   // seen: 0.4 %
+    CAPTURE(dense, standard.radiance, standard.transmittance, standard.sampler, linear.radiance, linear.transmittance,
+            linear.sampler);
+    CHECK(standard.radiance < 0.01);  // seen: 0.4 %
     CHECK(standard.transmittance < 2e-5);
     CHECK(linear.radiance < 0.2);
     CHECK(linear.transmittance < 0.005);
@@ -144,7 +151,8 @@ TEST_CASE("truth: with all orders the whole ray is chapter 09's march") {
           ours.push_back(item_of(AirPart::to_the_end, ray, {0.0, 128.0, 2.0}, 1.0));
           theirs.push_back(item_of(AirPart::all_orders, ray, {}));
         }
-    const std::vector<AirAnswer> a = evaluate_air(reference::earth(), ours, true, method), b = evaluate_air(reference::earth(), theirs, true, method);
+    const std::vector<AirAnswer> a = evaluate_air(reference::earth(), ours, true, method),
+                                 b = evaluate_air(reference::earth(), theirs, true, method);
     double radiance = 0.0, transmittance = 0.0;
     for (size_t i = 0; i < a.size(); ++i)
       for (int k = 0; k < 3; ++k) {
@@ -159,9 +167,11 @@ TEST_CASE("truth: with all orders the whole ray is chapter 09's march") {
 
 TEST_CASE("truth: shadow takes its share of single scattering and nothing else") {
   const SkyRay ray = ray_from_degrees(0.5, 80.0, 60.0, 40.0);
-  const std::vector<AirItem> items{item_of(AirPart::to_the_end, ray, {0.0, 64.0, 2.0}, 1.0), item_of(AirPart::to_the_end, ray, {0.0, 64.0, 2.0}, 0.25),
+  const std::vector<AirItem> items{item_of(AirPart::to_the_end, ray, {0.0, 64.0, 2.0}, 1.0),
+                                   item_of(AirPart::to_the_end, ray, {0.0, 64.0, 2.0}, 0.25),
                                    item_of(AirPart::to_the_end, ray, {0.0, 64.0, 2.0}, 0.0)};
-  const std::vector<AirAnswer> single = evaluate_air(reference::earth(), items), all = evaluate_air(reference::earth(), items, true);
+  const std::vector<AirAnswer> single = evaluate_air(reference::earth(), items),
+                               all = evaluate_air(reference::earth(), items, true);
   for (int k = 0; k < 3; ++k) {
     CHECK(single[2].radiance[k] == 0.0);
     CHECK(single[1].radiance[k] == Approx(0.25 * single[0].radiance[k]).epsilon(1e-5));

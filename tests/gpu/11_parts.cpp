@@ -11,7 +11,8 @@
 
 namespace welkin::test {
 
-std::vector<AirAnswer> evaluate_air(const reference::Planet& planet, const std::vector<AirItem>& items, bool orders, uint32_t method) {
+std::vector<AirAnswer> evaluate_air(const reference::Planet& planet, const std::vector<AirItem>& items, bool orders,
+                                    uint32_t method) {
   std::vector<RayItem> inputs;
   for (const AirItem& item : items) {
     RayItem input = ray_item(planet, {}, {.phase = kHenyeyGreenstein});
@@ -24,7 +25,8 @@ std::vector<AirAnswer> evaluate_air(const reference::Planet& planet, const std::
   }
   std::vector<float> floats(inputs.size() * 40);
   std::memcpy(floats.data(), inputs.data(), floats.size() * sizeof(float));
-  const std::vector<float> outputs = evaluate("tests/11_parts.comp", floats, 40, 6, {1, 1, 1, 0, method, 1, 32, orders});
+  const std::vector<float> outputs =
+      evaluate("tests/11_parts.comp", floats, 40, 6, {1, 1, 1, 0, method, 1, 32, orders});
   std::vector<AirAnswer> answers;
   for (size_t i = 0; i < items.size(); ++i) {
     const float* o = &outputs[6 * i];
@@ -35,13 +37,17 @@ std::vector<AirAnswer> evaluate_air(const reference::Planet& planet, const std::
 
 Light truth_to(const reference::Planet& planet, const SkyRay& ray, double d) {
   const auto radiance = [&](const SkyRay& from) {
-    const reference::SingleScattering light = reference::single_scattering(planet, from.altitude_km, from.view, from.sun);
+    const reference::SingleScattering light =
+        reference::single_scattering(planet, from.altitude_km, from.view, from.sun);
     reference::Rgb sum{};
-    for (int k = 0; k < 3; ++k) sum[k] = reference::rayleigh_phase(light.nu) * light.rayleigh[k] + reference::henyey_greenstein(light.nu, 0.8) * light.mie[k];
+    for (int k = 0; k < 3; ++k)
+      sum[k] = reference::rayleigh_phase(light.nu) * light.rayleigh[k] +
+               reference::henyey_greenstein(light.nu, 0.8) * light.mie[k];
     return sum;
   };
   // The rest of the ray, in the frame where its own start is straight up: the vertical turns towards the view.
-  const double r = planet.ground_radius_km + ray.altitude_km, mu = ray.view[2], sine = std::hypot(ray.view[0], ray.view[1]);
+  const double r = planet.ground_radius_km + ray.altitude_km, mu = ray.view[2],
+               sine = std::hypot(ray.view[0], ray.view[1]);
   const double r_d = std::sqrt(r * r + 2.0 * r * mu * d + d * d);
   const double c = (r + d * mu) / r_d, s = d * sine / r_d;  // of the turn
   const double x = sine > 0.0 ? ray.view[0] / sine : 1.0, y = sine > 0.0 ? ray.view[1] / sine : 0.0;
@@ -55,7 +61,9 @@ Light truth_to(const reference::Planet& planet, const SkyRay& ray, double d) {
   const reference::Rgb whole = radiance(ray), beyond = radiance(rest);
   Light light;
   for (int k = 0; k < 3; ++k) {
-    light.transmittance[k] = std::exp(-(planet.rayleigh_scattering_per_km[k] * column[0] + planet.mie_extinction_per_km[k] * column[1] + planet.ozone_absorption_per_km[k] * column[2]));
+    light.transmittance[k] =
+        std::exp(-(planet.rayleigh_scattering_per_km[k] * column[0] + planet.mie_extinction_per_km[k] * column[1] +
+                   planet.ozone_absorption_per_km[k] * column[2]));
     light.radiance[k] = whole[k] - light.transmittance[k] * beyond[k];
   }
   return light;
@@ -63,12 +71,15 @@ Light truth_to(const reference::Planet& planet, const SkyRay& ray, double d) {
 
 Scene scene_named(const std::string& name) { return load_scene(name, gpu::source_directory() / "chapters" / "scenes"); }
 
-Drawn::Drawn(const Scene& scene, VkExtent2D size, const std::vector<std::pair<std::string, std::string>>& knobs, bool chapter_10)
+Drawn::Drawn(const Scene& scene, VkExtent2D size, const std::vector<std::pair<std::string, std::string>>& knobs,
+             bool chapter_10)
     : scene_(scene), settings_(aerial_sky_knobs()), context_{device(), scene_, settings_, inject_} {
   for (const auto& [name, text] : knobs) settings_.set(name, text);
   const uint64_t before = device().allocated_bytes();
-  if (chapter_10) program_ = std::make_unique<SkyProgram>(context_);
-  else program_ = std::make_unique<AerialSky>(context_);
+  if (chapter_10)
+    program_ = std::make_unique<SkyProgram>(context_);
+  else
+    program_ = std::make_unique<AerialSky>(context_);
   renderer_ = std::make_unique<app::Renderer>(context_, chapter_, *program_, size);
   bytes_ = device().allocated_bytes() - before;
 }
@@ -80,7 +91,8 @@ Image Drawn::picture(const View& view, uint32_t index) {
   return renderer_->picture();
 }
 
-void write_gray(const std::filesystem::path& file, uint32_t width, uint32_t height, const std::vector<uint16_t>& samples, int bits) {
+void write_gray(const std::filesystem::path& file, uint32_t width, uint32_t height,
+                const std::vector<uint16_t>& samples, int bits) {
   std::string rows;
   for (uint32_t j = 0; j < height; ++j) {
     rows += '\0';  // no filter
@@ -89,7 +101,10 @@ void write_gray(const std::filesystem::path& file, uint32_t width, uint32_t heig
       if (bits == 16) rows += static_cast<char>(samples[size_t{j} * width + i] & 255);
     }
   }
-  const auto big = [](uint32_t v) { return std::string{static_cast<char>(v >> 24), static_cast<char>(v >> 16), static_cast<char>(v >> 8), static_cast<char>(v)}; };
+  const auto big = [](uint32_t v) {
+    return std::string{static_cast<char>(v >> 24), static_cast<char>(v >> 16), static_cast<char>(v >> 8),
+                       static_cast<char>(v)};
+  };
   std::string packed = "\x78\x01";  // deflate's blocks of up to 65535 bytes, stored as they are
   uint32_t a = 1, b = 0;
   for (size_t at = 0; at < rows.size(); at += 65535) {
@@ -108,7 +123,10 @@ void write_gray(const std::filesystem::path& file, uint32_t width, uint32_t heig
     }
     return big(static_cast<uint32_t>(data.size())) + kind + data + big(~crc);
   };
-  write_file_atomically(file, "\x89PNG\r\n\x1a\n" + chunk("IHDR", big(width) + big(height) + static_cast<char>(bits) + std::string(4, '\0')) + chunk("IDAT", packed) + chunk("IEND", ""));
+  write_file_atomically(file,
+                        "\x89PNG\r\n\x1a\n" +
+                            chunk("IHDR", big(width) + big(height) + static_cast<char>(bits) + std::string(4, '\0')) +
+                            chunk("IDAT", packed) + chunk("IEND", ""));
 }
 
 }  // namespace welkin::test

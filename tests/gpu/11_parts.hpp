@@ -1,4 +1,5 @@
-// What chapter 11's tests share: functions of its shaders over arrays, scenes drawn without a window, and height maps as files.
+// What chapter 11's tests share: functions of its shaders over arrays, scenes drawn without a window, and height maps
+// as files.
 #pragma once
 
 #include <array>
@@ -27,16 +28,18 @@ struct AirAnswer {
   std::array<double, 3> radiance, transmittance;
 };
 // method: 0 published, 2 moments; without `orders` single scattering.
-std::vector<AirAnswer> evaluate_air(const reference::Planet& planet, const std::vector<AirItem>& items, bool orders = false, uint32_t method = 0);
+std::vector<AirAnswer> evaluate_air(const reference::Planet& planet, const std::vector<AirItem>& items,
+                                    bool orders = false, uint32_t method = 0);
 
-// Single scattering (Henyey-Greenstein, g 0.8) of the first d km of a ray, in double: that of the whole ray less that of its
-// rest, seen through the first part.
+// Single scattering (Henyey-Greenstein, g 0.8) of the first d km of a ray, in double: that of the whole ray less that
+// of its rest, seen through the first part.
 Light truth_to(const reference::Planet& planet, const SkyRay& ray, double d_km);
 
 // A scene drawn by a chapter's program, linear.
 class Drawn {
  public:
-  Drawn(const Scene& scene, VkExtent2D size, const std::vector<std::pair<std::string, std::string>>& knobs, bool chapter_10 = false);
+  Drawn(const Scene& scene, VkExtent2D size, const std::vector<std::pair<std::string, std::string>>& knobs,
+        bool chapter_10 = false);
   Image picture(const View& view, uint32_t index = 0);
   std::vector<std::string> passes() const { return passes_; }
   std::string explain() const { return program_->explain(); }
@@ -56,7 +59,8 @@ class Drawn {
 
 Scene scene_named(const std::string& name);
 
-void write_gray(const std::filesystem::path& file, uint32_t width, uint32_t height, const std::vector<uint16_t>& samples, int bits);
+void write_gray(const std::filesystem::path& file, uint32_t width, uint32_t height,
+                const std::vector<uint16_t>& samples, int bits);
 
 // Writes a grayscale PNG of 8 or 16 bits; `at` gives 0 ... 65535 for column and row.
 template <typename At>

@@ -1,5 +1,5 @@
-// Whole pictures of chapter 11: what a scene lacks is not there, what did not change is not done again, froxels against the
-// march per pixel, depth against the sphere, and the cameras and suns that break such programs.
+// Whole pictures of chapter 11: what a scene lacks is not there, what did not change is not done again, froxels against
+// the march per pixel, depth against the sphere, and the cameras and suns that break such programs.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -24,7 +24,9 @@ bool finite(const Image& picture) {
   });
 }
 
-bool has(const std::vector<std::string>& passes, const char* name) { return std::find(passes.begin(), passes.end(), name) != passes.end(); }
+bool has(const std::vector<std::string>& passes, const char* name) {
+  return std::find(passes.begin(), passes.end(), name) != passes.end();
+}
 
 Scene small(const char* name) {
   Scene scene = scene_named(name);
@@ -58,16 +60,21 @@ TEST_CASE("passes run when what they depend on has changed") {
   Scene scene = small("noon");
   Drawn drawn(scene, kSize, {});
   drawn.picture(scene.views[0]);
-  for (const char* pass : {"air", "transmittance", "multiple scattering", "terrain shadows", "terrain", "aerial perspective", "sky", "compose"}) CHECK(has(drawn.passes(), pass));
+  for (const char* pass : {"air", "transmittance", "multiple scattering", "terrain shadows", "terrain",
+                           "aerial perspective", "sky", "compose"})
+    CHECK(has(drawn.passes(), pass));
   drawn.picture(scene.views[0], 1);
   CHECK(drawn.passes().front() == "sky");  // and compose, and the display's: nothing else
-  for (const char* pass : {"air", "transmittance", "multiple scattering", "terrain shadows", "terrain", "aerial perspective"}) CHECK_FALSE(has(drawn.passes(), pass));
+  for (const char* pass :
+       {"air", "transmittance", "multiple scattering", "terrain shadows", "terrain", "aerial perspective"})
+    CHECK_FALSE(has(drawn.passes(), pass));
   View turned = scene.views[0];
   turned.azimuth_deg += 10.0;
   drawn.picture(turned, 2);
   CHECK(has(drawn.passes(), "terrain"));
   CHECK(has(drawn.passes(), "aerial perspective"));
-  for (const char* pass : {"air", "transmittance", "multiple scattering", "terrain shadows"}) CHECK_FALSE(has(drawn.passes(), pass));
+  for (const char* pass : {"air", "transmittance", "multiple scattering", "terrain shadows"})
+    CHECK_FALSE(has(drawn.passes(), pass));
 }
 
 TEST_CASE("shadows, colour and froxels that are not wanted are not there") {
@@ -107,8 +114,8 @@ std::vector<double> errors_of(const char* name, size_t view, const Knobs& knobs)
 
 }  // namespace
 
-// Sunset is the hard one: the edges of shadows in the air are sharper than a froxel, and where light shines past a ridge into
-// shadow a whole froxel is lit or is not. Seen there: 8 % on one pixel in a hundred.
+// Sunset is the hard one: the edges of shadows in the air are sharper than a froxel, and where light shines past a
+// ridge into shadow a whole froxel is lit or is not. Seen there: 8 % on one pixel in a hundred.
 TEST_CASE("froxels against the march per pixel") {
   struct Case {
     const char* scene;
@@ -124,13 +131,14 @@ TEST_CASE("froxels against the march per pixel") {
   }
 }
 
-// Slices marched side by side and put together are those marched one after the other, but for rounding (seen: 2e-6); with
-// 36 of them the threads of a direction go round twice, and the last round is not full.
+// Slices marched side by side and put together are those marched one after the other, but for rounding (seen: 2e-6);
+// with 36 of them the threads of a direction go round twice, and the last round is not full.
 TEST_CASE("froxels filled by many threads are those of one") {
   for (const char* slices : {"32", "36"})
     for (const char* threads : {"8", "32"}) {
-      const std::vector<double> errors = differences(drawn_once("sunset", 1, {{"froxels.threads", threads}, {"froxels.slices", slices}}),
-                                                     drawn_once("sunset", 1, {{"froxels.threads", "1"}, {"froxels.slices", slices}}));
+      const std::vector<double> errors =
+          differences(drawn_once("sunset", 1, {{"froxels.threads", threads}, {"froxels.slices", slices}}),
+                      drawn_once("sunset", 1, {{"froxels.threads", "1"}, {"froxels.slices", slices}}));
       CAPTURE(slices, threads, errors.back());
       CHECK(errors.back() < 2e-5);
     }
@@ -138,7 +146,8 @@ TEST_CASE("froxels filled by many threads are those of one") {
 
 TEST_CASE("truth: a mean transmittance takes the colour out of what lies far away") {
   // From 10 km: snow and rock through 10 to 100 km of air.
-  const std::vector<double> colour = errors_of("noon", 2, {}), mean = errors_of("noon", 2, {{"froxels.transmittance", "mean"}});
+  const std::vector<double> colour = errors_of("noon", 2, {}),
+                            mean = errors_of("noon", 2, {{"froxels.transmittance", "mean"}});
   const size_t high = colour.size() * 99 / 100;
   CAPTURE(colour[high], mean[high]);
   CHECK(colour[high] < 0.01);
@@ -167,7 +176,8 @@ TEST_CASE("hard: depth of a flat map against the sphere") {
   graph.compile();
   const gpu::CommandPool pool = gpu::create_command_pool(device());
   gpu::Timer timer(device());
-  const gpu::Buffer out = gpu::create_buffer(device(), "depths", 64 * 64 * sizeof(float), VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Where::readback);
+  const gpu::Buffer out = gpu::create_buffer(device(), "depths", 64 * 64 * sizeof(float),
+                                             VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Where::readback);
   for (const double altitude_km : {0.002, 1.0, 10.0}) {
     const View view{.altitude_km = altitude_km, .azimuth_deg = 30.0, .elevation_deg = -20.0, .fov_deg = 60.0};
     const app::CameraPose pose = app::pose_of(view);
@@ -175,11 +185,17 @@ TEST_CASE("hard: depth of a flat map against the sphere") {
     gpu::run_once(device(), pool, [&](VkCommandBuffer commands) {
       timer.begin_frame(commands);
       graph.execute({commands, relief.depth(), camera, timer, 0, 0, 0.0, pose.position_km});
-      constexpr gpu::Use drawn{VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT, VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT, VK_IMAGE_LAYOUT_GENERAL};
+      constexpr gpu::Use drawn{VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
+                               VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT, VK_IMAGE_LAYOUT_GENERAL};
       gpu::image_barrier(commands, relief.depth().handle, drawn, gpu::kTransferRead, VK_IMAGE_ASPECT_DEPTH_BIT);
-      const VkBufferImageCopy copy{.imageSubresource = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 0, 1}, .imageExtent = {64, 64, 1}};
-      vkCmdCopyImageToBuffer(commands, relief.depth().handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, out.handle, 1, &copy);
-      gpu::image_barrier(commands, relief.depth().handle, gpu::kTransferRead, {VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT, VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT, VK_IMAGE_LAYOUT_GENERAL}, VK_IMAGE_ASPECT_DEPTH_BIT);
+      const VkBufferImageCopy copy{.imageSubresource = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 0, 1},
+                                   .imageExtent = {64, 64, 1}};
+      vkCmdCopyImageToBuffer(commands, relief.depth().handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, out.handle, 1,
+                             &copy);
+      gpu::image_barrier(commands, relief.depth().handle, gpu::kTransferRead,
+                         {VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT, VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
+                          VK_IMAGE_LAYOUT_GENERAL},
+                         VK_IMAGE_ASPECT_DEPTH_BIT);
       gpu::buffer_barrier(commands, out.handle, gpu::kTransferWrite, gpu::kHostRead);
     });
     double worst = 0.0, farthest = 0.0;
@@ -187,14 +203,18 @@ TEST_CASE("hard: depth of a flat map against the sphere") {
     for (int y = 0; y < 64; ++y)
       for (int x = 0; x < 64; ++x) {
         const double px = (2 * x + 1 - 64) / 64.0, py = (2 * y + 1 - 64) / 64.0;
-        const glm::dvec3 forward(camera.forward), direction = forward + glm::dvec3(camera.right) * px - glm::dvec3(camera.up) * py;
+        const glm::dvec3 forward(camera.forward),
+            direction = forward + glm::dvec3(camera.right) * px - glm::dvec3(camera.up) * py;
         const double length = glm::length(direction), mu = direction.z / length, r = 6360.0 + altitude_km;
         const double disc = mu * mu * r * r - altitude_km * (2 * 6360.0 + altitude_km);
         if (mu > -0.02 || disc <= 0.0) continue;  // grazing rays magnify the mesh's sag, which is not what is tested
         const double truth = altitude_km * (2 * 6360.0 + altitude_km) / (-mu * r + std::sqrt(disc));
         if (truth > 190.0) continue;  // off the map
         const float depth = out.as<float>()[static_cast<size_t>(y * 64 + x)];
-        if (depth <= 0.0f) { ++missing; continue; }
+        if (depth <= 0.0f) {
+          ++missing;
+          continue;
+        }
         const double t = kNear_km / depth * length / glm::dot(direction, forward);
         worst = std::max(worst, std::abs(t / truth - 1.0));
         farthest = std::max(farthest, truth);
@@ -209,7 +229,9 @@ TEST_CASE("hard: depth of a flat map against the sphere") {
 
 TEST_CASE("hard: a camera on a peak, one inside it, and one outside the map") {
   const TemporaryDirectory directory;
-  write_height_map(directory / "peak.png", 65, 65, [](uint32_t i, uint32_t j) { return std::max(0.0, 65535.0 * (1.0 - std::hypot(i - 32.0, j - 32.0) / 20.0)); });
+  write_height_map(directory / "peak.png", 65, 65, [](uint32_t i, uint32_t j) {
+    return std::max(0.0, 65535.0 * (1.0 - std::hypot(i - 32.0, j - 32.0) / 20.0));
+  });
   Scene scene = scene_named("noon");
   scene.terrain = Terrain{.height_map = (directory / "peak.png").string(), .extent_km = 32.0, .height_km = 4.0};
   Drawn drawn(scene, kSize, {});
@@ -231,8 +253,10 @@ TEST_CASE("hard: orbit, dusk, night and dense air are finite, and dusk is not bl
     double zenith_deg;
     std::vector<std::pair<double, double>> views;  // altitude in km, elevation in degrees
   };
-  for (const Case& c : {Case{"noon", 25.0, {{400.0, -45.0}, {36000.0, -89.5}, {100.0, -30.0}, {99.99, -30.0}}}, Case{"alien", 40.0, {{0.0005, 0.0}, {50.0, -40.0}}},
-                        Case{"twilight", 94.0, {{0.0005, 0.0}, {3.0, -10.0}}}, Case{"twilight", 120.0, {{0.0005, 0.0}}}}) {
+  for (const Case& c :
+       {Case{"noon", 25.0, {{400.0, -45.0}, {36000.0, -89.5}, {100.0, -30.0}, {99.99, -30.0}}},
+        Case{"alien", 40.0, {{0.0005, 0.0}, {50.0, -40.0}}}, Case{"twilight", 94.0, {{0.0005, 0.0}, {3.0, -10.0}}},
+        Case{"twilight", 120.0, {{0.0005, 0.0}}}}) {
     Scene scene = small(c.scene);
     scene.sun.zenith_deg = c.zenith_deg;
     Drawn drawn(scene, {32, 18}, {{"aerial.march_slices", "16"}});

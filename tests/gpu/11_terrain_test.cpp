@@ -6,8 +6,8 @@
 
 #include "chapters/11_aerial_perspective/relief.hpp"
 #include "chapters/11_aerial_perspective/terrain_map.hpp"
-#include "tests/gpu/11_parts.hpp"
 #include "common/image/atomic_file.hpp"
+#include "tests/gpu/11_parts.hpp"
 #include "tests/unit/temporary.hpp"
 
 using namespace welkin;
@@ -37,7 +37,8 @@ uint64_t bits_of(const std::vector<float>& values) {
 }  // namespace
 
 TEST_CASE("terrain from noise is the same bits every time, level at the rim and as high as asked") {
-  const TerrainMap map = make_terrain_map({.size = 256}), again = make_terrain_map({.size = 256}), other = make_terrain_map({.size = 256, .seed = 2});
+  const TerrainMap map = make_terrain_map({.size = 256}), again = make_terrain_map({.size = 256}),
+                   other = make_terrain_map({.size = 256, .seed = 2});
   CHECK(map.height_km == again.height_km);
   CHECK(map.height_km != other.height_km);
   CHECK(bits_of(map.height_km) == 0x62e1f7b36a19a4a7ull);
@@ -73,11 +74,16 @@ TEST_CASE("height maps that are none are refused in one line") {
   write_height_map(named("one.png"), 1, 1, flat);
   write_height_map(named("large.png"), 4097, 4097, flat);
   write_file_atomically(named("text.png"), "this is not a picture, though its name says that it is one");
-  CHECK(refusal({.height_map = named("eight.png")}) == "height map " + named("eight.png") + ": 8 bits a sample, grayscale; " + accepted);
-  CHECK(refusal({.height_map = named("oblong.png")}) == "height map " + named("oblong.png") + ": 4 x 8 samples, not square; " + accepted);
-  CHECK(refusal({.height_map = named("one.png")}) == "height map " + named("one.png") + ": 1 samples a side; " + accepted);
-  CHECK(refusal({.height_map = named("large.png")}) == "height map " + named("large.png") + ": 4097 samples a side; " + accepted);
-  CHECK(refusal({.height_map = named("text.png")}) == "height map " + named("text.png") + ": not a PNG file; " + accepted);
+  CHECK(refusal({.height_map = named("eight.png")}) ==
+        "height map " + named("eight.png") + ": 8 bits a sample, grayscale; " + accepted);
+  CHECK(refusal({.height_map = named("oblong.png")}) ==
+        "height map " + named("oblong.png") + ": 4 x 8 samples, not square; " + accepted);
+  CHECK(refusal({.height_map = named("one.png")}) ==
+        "height map " + named("one.png") + ": 1 samples a side; " + accepted);
+  CHECK(refusal({.height_map = named("large.png")}) ==
+        "height map " + named("large.png") + ": 4097 samples a side; " + accepted);
+  CHECK(refusal({.height_map = named("text.png")}) ==
+        "height map " + named("text.png") + ": not a PNG file; " + accepted);
   CHECK(refusal({.height_map = named("missing.png")}).find("missing.png") != std::string::npos);
   // Cut off behind a sound header.
   std::string cut = read_file(named("oblong.png"), 1 << 20);
@@ -90,14 +96,18 @@ TEST_CASE("height maps that are none are refused in one line") {
 TEST_CASE("a place of the map and the point above it are inverse, to millimetres") {
   std::vector<AirItem> items;
   Random random(3);
-  for (int i = 0; i < 2000; ++i) items.push_back({AirPart::planet, {random.uniform(-500, 500), random.uniform(-500, 500), random.uniform(0, 9), 0.0}});
+  for (int i = 0; i < 2000; ++i)
+    items.push_back(
+        {AirPart::planet, {random.uniform(-500, 500), random.uniform(-500, 500), random.uniform(0, 9), 0.0}});
   const std::vector<AirAnswer> answers = evaluate_air(reference::earth(), items);
   double point_km = 0.0, place_km = 0.0, altitude_km = 0.0;
   for (size_t i = 0; i < items.size(); ++i) {
-    const double x = double(float(items[i].a[0])), y = double(float(items[i].a[1])), h = double(float(items[i].a[2])), upright = std::sqrt(6360.0 * 6360.0 - x * x - y * y);
+    const double x = double(float(items[i].a[0])), y = double(float(items[i].a[1])), h = double(float(items[i].a[2])),
+                 upright = std::sqrt(6360.0 * 6360.0 - x * x - y * y);
     const double truth[3] = {x * (1 + h / 6360.0), y * (1 + h / 6360.0), upright * (1 + h / 6360.0) - 6360.0};
     for (int k = 0; k < 3; ++k) point_km = std::max(point_km, std::abs(answers[i].radiance[k] - truth[k]));
-    place_km = std::max({place_km, std::abs(answers[i].transmittance[0] - x), std::abs(answers[i].transmittance[1] - y)});
+    place_km =
+        std::max({place_km, std::abs(answers[i].transmittance[0] - x), std::abs(answers[i].transmittance[1] - y)});
     altitude_km = std::max(altitude_km, std::abs(answers[i].transmittance[2] - h));
   }
   CAPTURE(point_km, place_km, altitude_km);
@@ -116,7 +126,8 @@ TEST_CASE("rings of the mesh leave no gap") {
     const double snap_x = std::floor(x / (2 * cell)) * 2 * cell, snap_y = std::floor(y / (2 * cell)) * 2 * cell;
     for (int k = 0; k <= 128; k += 3)
       for (const auto& [i, j] : {std::pair{0, k}, {128, k}, {k, 0}, {k, 128}})
-        items.push_back({AirPart::ring, {double(i), double(j), cells, 0.0}, {snap_x, snap_y, cell, 0.0}, {x, y, 0.0, 0.0}});
+        items.push_back(
+            {AirPart::ring, {double(i), double(j), cells, 0.0}, {snap_x, snap_y, cell, 0.0}, {x, y, 0.0, 0.0}});
   }
   double gap = 0.0, moved = 0.0;
   for (const AirAnswer& answer : evaluate_air(reference::earth(), items))
@@ -125,7 +136,8 @@ TEST_CASE("rings of the mesh leave no gap") {
       gap = std::max(gap, std::abs(steps - std::round(steps)));
     }
   // Next to the camera nothing slides.
-  for (const AirAnswer& answer : evaluate_air(reference::earth(), {{AirPart::ring, {63, 65, cells, 0}, {1, 2, cell, 0}, {1.01, 2.01, 0, 0}}}))
+  for (const AirAnswer& answer :
+       evaluate_air(reference::earth(), {{AirPart::ring, {63, 65, cells, 0}, {1, 2, cell, 0}, {1.01, 2.01, 0, 0}}}))
     moved = std::max(std::abs(answer.radiance[0] - (1 - cell)), std::abs(answer.radiance[1] - (2 + cell)));
   CAPTURE(gap, moved);
   CHECK(gap < 1e-4);
@@ -135,7 +147,11 @@ TEST_CASE("rings of the mesh leave no gap") {
 TEST_CASE("scalars: the sun's disc over an edge, depth, shadow height, slices and back") {
   std::vector<AirItem> items;
   const double above[] = {-2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0}, s[] = {0.25, 1.0, 7.5, 16.0, 31.9, 32.0, 12.0};
-  for (int i = 0; i < 7; ++i) items.push_back({AirPart::scalars, {above[i], 1e-4 / std::pow(10.0, i), 1e-4, 0.5}, {2.0, 30.0, 0.02, 0.0}, {s[i], 32.0, i % 2 == 0 ? 2.0 : 1.0, 0.0}});
+  for (int i = 0; i < 7; ++i)
+    items.push_back({AirPart::scalars,
+                     {above[i], 1e-4 / std::pow(10.0, i), 1e-4, 0.5},
+                     {2.0, 30.0, 0.02, 0.0},
+                     {s[i], 32.0, i % 2 == 0 ? 2.0 : 1.0, 0.0}});
   const std::vector<AirAnswer> answers = evaluate_air(reference::earth(), items);
   for (int i = 0; i < 7; ++i) {
     // A circle's segment, counted.
@@ -172,12 +188,19 @@ TEST_CASE("each sign stands at its distance and the ground is of unit normals") 
   for (int k = 0; k < 7; ++k) {
     const double azimuth = 0.3 + (k - 3) * 0.13, lift = 0.18 + distances[k] / 12720.0 - distances[k] / 12720.0;
     const double length = std::sqrt(1.0 + lift * lift);
-    items.push_back({AirPart::sign, {0, 0, 0.002, 0}, {std::sin(azimuth) / length, std::cos(azimuth) / length, lift / length, 0}, {double(k), 0.3, 0, 0}});
+    items.push_back({AirPart::sign,
+                     {0, 0, 0.002, 0},
+                     {std::sin(azimuth) / length, std::cos(azimuth) / length, lift / length, 0},
+                     {double(k), 0.3, 0, 0}});
   }
   const std::vector<AirAnswer> answers = evaluate_air(reference::earth(), items);
-  for (int k = 0; k < 7; ++k) CHECK(answers[k].radiance[0] == Approx(distances[k] * std::sqrt(1.0 + 0.18 * 0.18)).epsilon(0.005));
-  for (const AirAnswer& answer : evaluate_air(reference::earth(), {{AirPart::ground, {0.3, -0.2, 0, 0}, {0.2, 0.3, 0.1, 0.4}, {12.3, -40.0, 1e-6, 0}}, {AirPart::ground, {0, 0, 0, 0}, {0, 0, 0, 1}, {0, 0, 1.0, 0}}})) {
-    CHECK(std::hypot(answer.transmittance[0], answer.transmittance[1], answer.transmittance[2]) == Approx(1.0).epsilon(1e-5));
+  for (int k = 0; k < 7; ++k)
+    CHECK(answers[k].radiance[0] == Approx(distances[k] * std::sqrt(1.0 + 0.18 * 0.18)).epsilon(0.005));
+  for (const AirAnswer& answer : evaluate_air(
+           reference::earth(), {{AirPart::ground, {0.3, -0.2, 0, 0}, {0.2, 0.3, 0.1, 0.4}, {12.3, -40.0, 1e-6, 0}},
+                                {AirPart::ground, {0, 0, 0, 0}, {0, 0, 0, 1}, {0, 0, 1.0, 0}}})) {
+    CHECK(std::hypot(answer.transmittance[0], answer.transmittance[1], answer.transmittance[2]) ==
+          Approx(1.0).epsilon(1e-5));
     for (int k = 0; k < 3; ++k) CHECK((answer.radiance[k] > 0.0 && answer.radiance[k] < 1.0));
   }
 }

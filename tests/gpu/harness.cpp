@@ -33,10 +33,13 @@ std::vector<float> evaluate(const std::string& shader, const std::vector<float>&
                             size_t outputs_per_item, const gpu::Specialization& specialization) {
   const uint32_t count = static_cast<uint32_t>(inputs.size() / inputs_per_item);
   const gpu::ComputePipeline pipeline = gpu::create_compute_pipeline(
-      device(), shader, {{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}}, sizeof count, specialization);
+      device(), shader, {{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}}, sizeof count,
+      specialization);
   const gpu::DescriptorSet set = gpu::create_descriptor_set(device(), pipeline.set_layout, pipeline.bindings);
-  const gpu::Buffer in = gpu::create_buffer(device(), "inputs", inputs.size() * sizeof(float), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::upload);
-  const gpu::Buffer out = gpu::create_buffer(device(), "outputs", count * outputs_per_item * sizeof(float), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::readback);
+  const gpu::Buffer in = gpu::create_buffer(device(), "inputs", inputs.size() * sizeof(float),
+                                            VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::upload);
+  const gpu::Buffer out = gpu::create_buffer(device(), "outputs", count * outputs_per_item * sizeof(float),
+                                             VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::readback);
   std::memcpy(in.mapped, inputs.data(), inputs.size() * sizeof(float));
   gpu::write_buffer(device(), set, 0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, in);
   gpu::write_buffer(device(), set, 1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, out);

@@ -146,9 +146,7 @@ Rgb optical_depth(const Planet& p, const std::array<double, 3>& column) {
   return tau;
 }
 
-Line line_of(const Planet& planet, double r, double sine) {
-  return {r * sine, r * sine - planet.ground_radius_km};
-}
+Line line_of(const Planet& planet, double r, double sine) { return {r * sine, r * sine - planet.ground_radius_km}; }
 
 // Parts of [s0, s1] outside the shadow cylinder. along(t) = position . sun, quadratic form of the distance to the axis.
 std::vector<std::array<double, 2>> lit_parts(double r0, double mu, double mu_sun, double nu, double length, double R) {
@@ -225,7 +223,9 @@ Rgb transmittance_to_top(const Planet& planet, double altitude_km, double mu) {
 }
 
 Direction direction_from_degrees(double zenith_deg, double azimuth_deg) {
-  const auto sine = [](double degrees) { return std::fmod(degrees, 180.0) == 0.0 ? 0.0 : std::sin(degrees * kPi / 180.0); };
+  const auto sine = [](double degrees) {
+    return std::fmod(degrees, 180.0) == 0.0 ? 0.0 : std::sin(degrees * kPi / 180.0);
+  };
   const auto cosine = [](double degrees) {
     return std::fmod(degrees, 180.0) == 90.0 ? 0.0 : std::cos(degrees * kPi / 180.0);
   };

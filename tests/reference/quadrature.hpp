@@ -47,13 +47,13 @@ double draine(double nu, double g, double alpha);
 enum class RayEnd { kSky, kGround, kMiss };
 
 struct SingleScattering {
-  Rgb rayleigh{};                     // I_R, before its phase function
-  Rgb mie{};                          // I_M, before its phase function
-  Rgb ground1{};                      // radiance of the directly lit ground of albedo 1, seen through the air
-  Rgb transmittance{1.0, 1.0, 1.0};   // of the whole ray
-  double nu = 1.0;                    // cosine between view and sun
-  double tangent_altitude_km = 0.0;   // of the line the ray lies on; minus the radius when vertical
-  double relative_error = 0.0;        // largest estimated relative error of the six integrals
+  Rgb rayleigh{};                    // I_R, before its phase function
+  Rgb mie{};                         // I_M, before its phase function
+  Rgb ground1{};                     // radiance of the directly lit ground of albedo 1, seen through the air
+  Rgb transmittance{1.0, 1.0, 1.0};  // of the whole ray
+  double nu = 1.0;                   // cosine between view and sun
+  double tangent_altitude_km = 0.0;  // of the line the ray lies on; minus the radius when vertical
+  double relative_error = 0.0;       // largest estimated relative error of the six integrals
   RayEnd end = RayEnd::kMiss;
 };
 

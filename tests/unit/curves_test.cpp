@@ -24,8 +24,7 @@ struct Outcome {
 };
 
 Outcome plot(const std::string& arguments) {
-  std::FILE* pipe =
-      ::popen(("python3 '" WELKIN_SOURCE_DIRECTORY "/docs/plot.py' " + arguments + " 2>&1").c_str(), "r");
+  std::FILE* pipe = ::popen(("python3 '" WELKIN_SOURCE_DIRECTORY "/docs/plot.py' " + arguments + " 2>&1").c_str(), "r");
   REQUIRE(pipe != nullptr);
   std::string text;
   std::array<char, 4096> buffer;

@@ -108,7 +108,8 @@ TEST_CASE("ladders multiply out; knobs without one, or set by hand, stay", "[rep
   const auto alone = ladder_settings(Settings(many));
   REQUIRE(alone.size() == 65);
   CHECK(alone.front() == std::vector<double>(64, 0.0));
-  for (size_t i = 0; i < 64; ++i) CHECK((alone[i + 1][i] == 1.0 && std::count(alone[i + 1].begin(), alone[i + 1].end(), 1.0) == 1));
+  for (size_t i = 0; i < 64; ++i)
+    CHECK((alone[i + 1][i] == 1.0 && std::count(alone[i + 1].begin(), alone[i + 1].end(), 1.0) == 1));
 }
 
 TEST_CASE("a sweep's table has its columns, its source and no hidden NaN", "[report]") {

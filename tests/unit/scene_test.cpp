@@ -52,10 +52,11 @@ bool same(const Scene& a, const Scene& b) {
            x.elevation_deg == y.elevation_deg && x.fov_deg == y.fov_deg;
   };
   const auto terrains = [](const welkin::Terrain& x, const welkin::Terrain& y) {
-    return x.height_map == y.height_map && x.extent_km == y.extent_km && x.height_km == y.height_km && x.size == y.size &&
-           x.seed == y.seed && x.shadows == y.shadows && x.signs_azimuth_deg == y.signs_azimuth_deg;
+    return x.height_map == y.height_map && x.extent_km == y.extent_km && x.height_km == y.height_km &&
+           x.size == y.size && x.seed == y.seed && x.shadows == y.shadows && x.signs_azimuth_deg == y.signs_azimuth_deg;
   };
-  return a.terrain.has_value() == b.terrain.has_value() && (!a.terrain || terrains(*a.terrain, *b.terrain)) && a.name == b.name && a.planet.ground_radius_km == b.planet.ground_radius_km &&
+  return a.terrain.has_value() == b.terrain.has_value() && (!a.terrain || terrains(*a.terrain, *b.terrain)) &&
+         a.name == b.name && a.planet.ground_radius_km == b.planet.ground_radius_km &&
          a.planet.top_radius_km == b.planet.top_radius_km && a.planet.ground_albedo == b.planet.ground_albedo &&
          std::equal(a.media.begin(), a.media.end(), b.media.begin(), b.media.end(), media) &&
          a.sun.zenith_deg == b.sun.zenith_deg && a.sun.azimuth_deg == b.sun.azimuth_deg &&
@@ -103,7 +104,8 @@ TEST_CASE("awkward values survive the round trip", "[scene]") {
   scene.sun.zenith_deg = 1e-300;
   scene.sun.irradiance = {0, 1e6, 0.1};
   scene.views[0].altitude_km = 384399.9999999999;
-  scene.terrain = welkin::Terrain{.height_map = "/a \"b\"/é.png", .extent_km = 1.1, .shadows = false, .signs_azimuth_deg = 0.1};
+  scene.terrain =
+      welkin::Terrain{.height_map = "/a \"b\"/é.png", .extent_km = 1.1, .shadows = false, .signs_azimuth_deg = 0.1};
   scene.settings = {{"zz.last_first", "64"}, {"a.text", "quote \" backslash \\ é"}, {"mie.phase", "draine"}};
   CHECK(same(scene, welkin::parse_scene(welkin::write_scene(scene), "written")));
 }

@@ -14,11 +14,11 @@ void main() {
   if (item >= count) return;
   const uint at = 13 * item;
   CameraRays camera;
-  camera.right = vec4(vector(at), 0.0);
-  camera.up = vec4(vector(at + 3), 0.0);
-  camera.forward = vec4(vector(at + 6), 0.0);
-  camera.sun = vec4(0.0);
-  camera.size = ivec4(int(inputs[at + 9]), int(inputs[at + 10]), 0, 0);
+  camera.right = vector(at);
+  camera.up = vector(at + 3);
+  camera.forward = vector(at + 6);
+  camera.sun = vec3(0.0);
+  camera.size = ivec2(int(inputs[at + 9]), int(inputs[at + 10]));
   const vec3 direction = camera_direction(camera, ivec2(int(inputs[at + 11]), int(inputs[at + 12])));
   outputs[3 * item] = direction.x;
   outputs[3 * item + 1] = direction.y;

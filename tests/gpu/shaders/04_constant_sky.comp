@@ -5,6 +5,7 @@
 #include "04_air/variant.glsl"
 layout(constant_id = 4) const int PHASE_DETAIL = 3;
 #include "04_air/constant_sky.glsl"
+#include "../tests/gpu/shaders/atmosphere_of.glsl"
 layout(local_size_x = 64) in;
 layout(binding = 0) readonly buffer In { float values[]; } inputs;
 layout(binding = 1) writeonly buffer Out { float values[]; } outputs;
@@ -16,7 +17,7 @@ void main() {
   const uint i = gl_GlobalInvocationID.x;
   if (i >= count) return;
   const uint p = 35u * i, q = 13u * i;
-  const Atmosphere atmosphere = Atmosphere(four(p), four(p + 4u), four(p + 8u), four(p + 12u), four(p + 16u), four(p + 20u), four(p + 24u));
+  const Atmosphere atmosphere = atmosphere_of(four(p), four(p + 4u), four(p + 8u), four(p + 12u), four(p + 16u), four(p + 20u), four(p + 24u));
   const vec3 view = four(p + 29u).xyz;
   const vec3 sun = vec3(inputs.values[p + 32u], inputs.values[p + 33u], inputs.values[p + 34u]);
   const float altitude = inputs.values[p + 28u];

@@ -9,6 +9,7 @@ const bool HAS_OZONE = true;
 const int MIE_PHASE = 0;
 #include "05_single_scattering/single_scattering.glsl"
 #include "05_single_scattering/sun_disc.glsl"
+#include "../tests/gpu/shaders/atmosphere_of.glsl"
 
 layout(binding = 0, std430) readonly buffer Inputs {
   float inputs[];
@@ -22,10 +23,10 @@ layout(push_constant) uniform Push {
 
 // The columns to the top from samples in the middle of n equal segments.
 vec3 equal_step_columns(Atmosphere atmosphere, float altitude_km, float mu_sun, int n) {
-  float length_km = distance_to_shell_from_inside(atmosphere.shape.x, altitude_km, mu_sun, atmosphere.shape.y);
+  float length_km = distance_to_shell_from_inside(atmosphere.ground_radius_km, altitude_km, mu_sun, atmosphere.top_km);
   vec3 column = vec3(0.0);
   for (int i = 0; i < n; ++i) {
-    float h = altitude_along(atmosphere.shape.x, altitude_km, mu_sun, (float(i) + 0.5) / float(n) * length_km);
+    float h = altitude_along(atmosphere.ground_radius_km, altitude_km, mu_sun, (float(i) + 0.5) / float(n) * length_km);
     column += densities(atmosphere, max(h, 0.0)) * (length_km / float(n));
   }
   return column;
@@ -39,14 +40,8 @@ void main() {
     a[i] = inputs[8 * item + i];
     result[i] = 0.0;
   }
-  Atmosphere earth;
-  earth.rayleigh = vec4(5.802e-3, 13.558e-3, 33.1e-3, 8.0);
-  earth.mie_scattering = vec4(3.996e-3, 3.996e-3, 3.996e-3, 1.2);
-  earth.mie_extinction = vec4(4.440e-3, 4.440e-3, 4.440e-3, 0.8);
-  earth.ozone = vec4(0.650e-3, 1.881e-3, 0.085e-3, 25.0);
-  earth.shape = vec4(6360.0, 100.0, 15.0, 0.00465);
-  earth.ground = vec4(0.0);
-  earth.sun = vec4(1.0, 1.0, 1.0, 0.0);
+  Atmosphere earth = atmosphere_of(vec4(5.802e-3, 13.558e-3, 33.1e-3, 8.0), vec4(vec3(3.996e-3), 1.2), vec4(vec3(4.440e-3), 0.8),
+                                   vec4(0.650e-3, 1.881e-3, 0.085e-3, 25.0), vec4(6360.0, 100.0, 15.0, 0.00465), vec4(0.0), vec4(1.0, 1.0, 1.0, 0.0));
   const int part = int(a[0]);
   if (part == 0) {  // rule, i, n: a segment; then sample and length of a march that steps from sample to sample
     const Segment segment = quadrature_segment(int(a[1]), int(a[2]), int(a[3]));
@@ -72,7 +67,7 @@ void main() {
     const AirRay ray = enter_air(earth, a[1], vec3(a[2], 0.0, a[3]), vec3(0.0, 0.0, 1.0));
     result[0] = ray.hits_air ? 1.0 : 0.0;
     result[1] = ray.length_km;
-    result[2] = earth.shape.y - tangent_altitude(earth.shape.x, a[1], a[3], a[2]) > 0.0 ? 1.0 : 0.0;
+    result[2] = earth.top_km - tangent_altitude(earth.ground_radius_km, a[1], a[3], a[2]) > 0.0 ? 1.0 : 0.0;
   } else {  // angular radius, 1 - cosine, cosine: the disc; then with the cosine alone
     const vec3 held = sun_disc_radiance(vec3(1.0), a[1], a[2]);
     const vec3 naive = sun_disc_radiance(vec3(1.0), a[1], 1.0 - a[3]);

@@ -9,6 +9,7 @@ layout(constant_id = 2) const bool HAS_OZONE = true;
 layout(constant_id = 3) const int MIE_PHASE = 0;
 layout(constant_id = 4) const int RULE = 5;
 #include "05_single_scattering/single_scattering.glsl"
+#include "../tests/gpu/shaders/atmosphere_of.glsl"
 
 layout(binding = 0, std430) readonly buffer Inputs {
   vec4 inputs[];
@@ -24,7 +25,7 @@ void main() {
   const uint item = gl_GlobalInvocationID.x;
   if (item >= count) return;
   const uint first = 10 * item;
-  const Atmosphere atmosphere = Atmosphere(inputs[first], inputs[first + 1], inputs[first + 2], inputs[first + 3],
+  const Atmosphere atmosphere = atmosphere_of(inputs[first], inputs[first + 1], inputs[first + 2], inputs[first + 3],
                                            inputs[first + 4], inputs[first + 5], inputs[first + 6]);
   const vec4 view = inputs[first + 7];
   const vec4 steps = inputs[first + 9];

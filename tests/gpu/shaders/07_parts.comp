@@ -13,6 +13,7 @@ const bool SPREAD = true;
 const bool SURFACES = false;
 #include "07_ground_truth/accumulate.glsl"
 #include "07_ground_truth/path.glsl"
+#include "../tests/gpu/shaders/atmosphere_of.glsl"
 
 layout(binding = 0, std430) readonly buffer Inputs {
   float inputs[];
@@ -26,7 +27,7 @@ layout(push_constant) uniform Push {
 
 // Earth, its aerosol with g as given, second lobe and weight.
 Atmosphere earth(float g, float second_g, float shape) {
-  return Atmosphere(vec4(5.802e-3, 13.558e-3, 33.1e-3, 8.0), vec4(vec3(3.996e-3), 1.2), vec4(vec3(4.440e-3), g),
+  return atmosphere_of(vec4(5.802e-3, 13.558e-3, 33.1e-3, 8.0), vec4(vec3(3.996e-3), 1.2), vec4(vec3(4.440e-3), g),
                     vec4(0.650e-3, 1.881e-3, 0.085e-3, 25.0), vec4(6360.0, 100.0, 15.0, 0.00465), vec4(vec3(0.3), second_g), vec4(vec3(1.0), shape));
 }
 

@@ -14,6 +14,7 @@ layout(constant_id = 6) const bool ENVIRONMENT = false;
 layout(constant_id = 7) const bool SPREAD = true;
 layout(constant_id = 8) const bool SURFACES = false;
 #include "07_ground_truth/path.glsl"
+#include "../tests/gpu/shaders/atmosphere_of.glsl"
 
 layout(binding = 0, std430) readonly buffer Inputs {
   vec4 inputs[];
@@ -29,13 +30,13 @@ void main() {
   const uint item = gl_GlobalInvocationID.x;
   if (item >= count) return;
   const uint first = 10 * item;
-  const Atmosphere atmosphere = Atmosphere(inputs[first], inputs[first + 1], inputs[first + 2], inputs[first + 3],
+  const Atmosphere atmosphere = atmosphere_of(inputs[first], inputs[first + 1], inputs[first + 2], inputs[first + 3],
                                            inputs[first + 4], inputs[first + 5], inputs[first + 6]);
   const vec4 view = inputs[first + 7];
   const vec4 sun = inputs[first + 8];
   const vec4 setting = inputs[first + 9];
   // With surfaces: distance in setting.w, level, of the ground's albedo.
-  const FirstSurface surface = FirstSurface(SURFACES ? setting.w : 0.0, vec3(0.0, 0.0, 1.0), atmosphere.ground.rgb);
+  const FirstSurface surface = FirstSurface(SURFACES ? setting.w : 0.0, vec3(0.0, 0.0, 1.0), atmosphere.ground_albedo);
   vec3 sum = vec3(0.0), squares = vec3(0.0);
   float unfinished = 0.0;
   int longest = 0;

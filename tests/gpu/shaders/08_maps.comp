@@ -26,7 +26,7 @@ void main() {
     result[i] = 0.0;
   }
   Atmosphere air;
-  air.shape = vec4(a[1], a[2], 15.0, 0.0);
+  air.ground_radius_km = a[1], air.top_km = a[2];
   const ivec2 size = ivec2(a[5], a[6]);
   if (a[0] == 0.0) {  // a place of the table, its path, and the place of that path
     const TablePath path = transmittance_path(air, vec2(a[3], a[4]), size);

@@ -13,6 +13,7 @@ const bool HAS_RAYLEIGH = true, HAS_MIE = true, HAS_OZONE = true;
 const int MIE_PHASE = 1, MS_METHOD = 0, MS_MAP = 1, MS_SIZE = 32;
 vec3 read_multiple_scattering_table(vec2 uv) { return vec3(0.0); }
 #include "09_multiple_scattering_lut/multiple_scattering.glsl"
+#include "../tests/gpu/shaders/atmosphere_of.glsl"
 
 layout(binding = 0, std430) readonly buffer Inputs {
   float inputs[];
@@ -25,17 +26,12 @@ layout(push_constant) uniform Push {
 };
 
 Atmosphere air_of(int which) {
-  Atmosphere air;
   const bool dense = (which & 1) == 1, conservative = which >= 2;
-  air.rayleigh = dense ? vec4(0.149, 0.142, 0.051, 18.416) : vec4(5.802e-3, 13.558e-3, 33.1e-3, 8.0);
-  air.mie_scattering = dense ? vec4(0.046, 0.047, 0.057, 13.143) : vec4(vec3(3.996e-3), 1.2);
-  air.mie_extinction = dense ? vec4(0.082, 0.071, 0.058, 0.8) : vec4(vec3(4.44e-3), 0.8);
-  if (conservative) air.mie_extinction.xyz = air.mie_scattering.xyz;
-  air.ozone = vec4(conservative ? vec3(0.0) : vec3(0.65e-3, 1.881e-3, 0.085e-3), 25.0);
-  air.shape = vec4(6360.0, 100.0, 15.0, 0.00465);
-  air.ground = vec4(vec3(conservative ? 1.0 : 0.3), 0.0);
-  air.sun = vec4(vec3(1.0), 0.0);
-  return air;
+  const vec4 rayleigh = dense ? vec4(0.149, 0.142, 0.051, 18.416) : vec4(5.802e-3, 13.558e-3, 33.1e-3, 8.0);
+  const vec4 mie_scattering = dense ? vec4(0.046, 0.047, 0.057, 13.143) : vec4(vec3(3.996e-3), 1.2);
+  const vec4 mie_extinction = conservative ? mie_scattering : dense ? vec4(0.082, 0.071, 0.058, 0.8) : vec4(vec3(4.44e-3), 0.8);
+  const vec4 ozone = vec4(conservative ? vec3(0.0) : vec3(0.65e-3, 1.881e-3, 0.085e-3), 25.0);
+  return atmosphere_of(rayleigh, mie_scattering, mie_extinction, ozone, vec4(6360.0, 100.0, 15.0, 0.00465), vec4(vec3(conservative ? 1.0 : 0.3), 0.0), vec4(vec3(1.0), 0.0));
 }
 
 void main() {
@@ -50,15 +46,15 @@ void main() {
     const WeightedDirection direction = direction_of_set(int(a[0]), int(a[1]), int(a[2]), a[3]);
     result[0] = vec4(direction.look, direction.weight);
   } else if (kind == 1) {
-    const vec2 point = table_point(int(a[0]), air.shape.y, table_unit_of_texel(vec2(a[2], a[3]), a[1]));
-    const vec2 uv = table_uv(table_unit(int(a[0]), air.shape.y, point.y, point.x), a[1]);
+    const vec2 point = table_point(int(a[0]), air.top_km, table_unit_of_texel(vec2(a[2], a[3]), a[1]));
+    const vec2 uv = table_uv(table_unit(int(a[0]), air.top_km, point.y, point.x), a[1]);
     result[0] = vec4(point, uv);
     result[1] = vec4(uv * a[1] - 0.5, 0.0, 0.0);
   } else if (kind == 2) {
     vec3 second = vec3(0.0), transfer = vec3(0.0);
     const int directions = int(a[2]);
     for (int n = 0; n < directions; ++n) {
-      const WeightedDirection direction = direction_of_set(int(a[3]), n, directions, horizon_cosine(air.shape.x, a[0]));
+      const WeightedDirection direction = direction_of_set(int(a[3]), n, directions, horizon_cosine(air.ground_radius_km, a[0]));
       const vec3 sun = sun_at(a[1]);
       const float nu = dot(direction.look, sun);
       const SourceRay along = source_ray(air, enter_air(air, a[0], direction.look, sun));

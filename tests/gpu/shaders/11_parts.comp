@@ -23,6 +23,7 @@ float sun_behind_terrain(float t_km, float altitude_km) { return seen_sun; }
 #include "11_aerial_perspective/aerial.glsl"
 #include "11_aerial_perspective/ground.glsl"
 #include "11_aerial_perspective/signs.glsl"
+#include "../tests/gpu/shaders/atmosphere_of.glsl"
 
 layout(binding = 0, std430) readonly buffer Inputs {
   vec4 inputs[];
@@ -58,8 +59,8 @@ RayLight run(Atmosphere air, vec4 a, vec4 b, vec4 c) {
     return march_to(method, ray, scattering, ray.length_km, int(c.y), int(c.z), 2.0);
   }
   if (kind == 4) {  // place a.xy, altitude a.z: the point, and back
-    light.radiance = on_planet(air.shape.x, a.xy, a.z);
-    light.transmittance = vec3(place_below(air.shape.x, light.radiance), altitude_of(air.shape.x, light.radiance));
+    light.radiance = on_planet(air.ground_radius_km, a.xy, a.z);
+    light.transmittance = vec3(place_below(air.ground_radius_km, light.radiance), altitude_of(air.ground_radius_km, light.radiance));
     return light;
   }
   if (kind == 5) {
@@ -67,7 +68,7 @@ RayLight run(Atmosphere air, vec4 a, vec4 b, vec4 c) {
     return light;
   }
   if (kind == 6) {
-    light.radiance = vec3(disc_above(a.x), distance_from_depth(a.y, a.z, a.w), shadow_altitude(air.shape.x, b.x, b.y, b.z));
+    light.radiance = vec3(disc_above(a.x), distance_from_depth(a.y, a.z, a.w), shadow_altitude(air.ground_radius_km, b.x, b.y, b.z));
     light.transmittance.x = slices_before(slice_end(c.x, c.y, 128.0, c.z), c.y, 128.0, c.z);
     return light;
   }
@@ -81,7 +82,7 @@ RayLight run(Atmosphere air, vec4 a, vec4 b, vec4 c) {
     light.transmittance = ground.normal;
     return light;
   }
-  const SignHit hit = meet_sign(int(c.x), air.shape.x, c.y, a.xyz, b.xyz);
+  const SignHit hit = meet_sign(int(c.x), air.ground_radius_km, c.y, a.xyz, b.xyz);
   light.radiance = vec3(hit.t_km, hit.paint, 0.0);
   light.transmittance = hit.normal;
   return light;
@@ -91,7 +92,7 @@ void main() {
   const uint item = gl_GlobalInvocationID.x;
   if (item >= count) return;
   const uint first = 10 * item;
-  const Atmosphere air = Atmosphere(inputs[first], inputs[first + 1], inputs[first + 2], inputs[first + 3], inputs[first + 4], inputs[first + 5], inputs[first + 6]);
+  const Atmosphere air = atmosphere_of(inputs[first], inputs[first + 1], inputs[first + 2], inputs[first + 3], inputs[first + 4], inputs[first + 5], inputs[first + 6]);
   const RayLight light = run(air, inputs[first + 7], inputs[first + 8], inputs[first + 9]);
   for (int i = 0; i < 3; ++i) {
     outputs[6 * item + i] = light.radiance[i];

@@ -18,6 +18,6 @@ MUTANTS = [
      "max((1.0 - mu) * (1.0 + mu), 0.0))) < 0.0)", "max((1.0 - mu) * (1.0 + mu), 0.0))) < -1.0)",
      "hard: a sun below the horizontal seen from the top of the air"),
     ("the air at the ground in place of that under the top", "08_transmittance_lut/table_texel.glsl",
-     "densities(atmosphere, 0.5 * (path.altitude_km + atmosphere.shape.y))", "densities(atmosphere, 0.0)",
+     "densities(atmosphere, 0.5 * (path.altitude_km + atmosphere.top_km))", "densities(atmosphere, 0.0)",
      "hard: the last kilometre under the top of a dense planet"),
 ]
