@@ -23,6 +23,7 @@ struct Knob {
   std::vector<std::string> choices;  // if not empty, the value is an index into these names
   std::vector<double> ladder;        // cheap → converged; empty: the sweep leaves this knob at its default
   bool rebuilds = false;             // true: a change makes new pipelines (it is compiled into the shader)
+  std::string effect{};              // that declares it, where that is not one of the chapter's own
 };
 
 // One list after the other: a chapter's own knobs and those of the chapters it uses.
@@ -48,6 +49,7 @@ class Settings {
   void set(std::string_view name, std::string_view text);
   void set_number(std::string_view name, double value);  // same checks
   std::string text(std::string_view name) const;         // round-trips through set()
+  const std::vector<double>& values() const { return values_; }
 
  private:
   size_t index(std::string_view name) const;

@@ -110,12 +110,13 @@ struct Loop {
   Window& window;
   WindowSwapchain swapchain;
   std::unique_ptr<Program> program;
-  std::unique_ptr<DisplaySystem> display;
+  Drawing drawing;
   PresentPass present;
   Targets targets;
   Panel panel;
   PanelState state;
   CameraPose pose;
+  bool cut = false;       // the next frame has nothing to do with the one before
   gpu::CommandPool pool;  // for screenshots
 
   Loop(Session& s, Window& w, VkSurfaceKHR surface)
@@ -123,7 +124,7 @@ struct Loop {
         window(w),
         swapchain(s.device, surface, framebuffer_size(w.handle)),
         program(s.make_program()),
-        display(make_display_system(s.context, s.chapter)),
+        drawing(s.context, s.chapter, *program),
         present(s.device, swapchain.format()),
         targets(create_targets(s.device, swapchain.size())),
         panel(w.handle, s.instance, s.device, swapchain),
@@ -135,9 +136,8 @@ struct Loop {
   ~Loop() { swapchain.wait_for_presentation(); }
 
   void use_targets() {
-    display->set_images(targets.picture, targets.displayed);
     present.set_image(session.device, targets.displayed);
-    program->set_target(targets.picture);
+    drawing.set_targets(targets);
   }
 
   void resize() {
@@ -168,17 +168,14 @@ struct Loop {
     session.settings = std::move(settings);
     pose = pose_of(session.scene.view(""));
     state.time_s = 0.0;
-    rebuild();
+    drawing.follow();
+    cut = true;
   }
 
   std::string error_of_what_is_shown() const;
   void ask_truth();
   void on_key(int key);
   bool draw(uint32_t index, double seconds);
-  void rebuild() {
-    program->rebuild();
-    display->rebuild();
-  }
 };
 
 // Path-traces the present view, small, and says how far the method is from it: and how far two such truths are from
@@ -239,7 +236,7 @@ void Loop::on_key(int key) {
       state.message = gpu::recompile_shaders(session.chapter.number);
       if (!state.message.empty()) break;  // the old pipeline stays
       swapchain.wait_for_all_frames();
-      rebuild();
+      drawing.reload();
       state.message = "shaders reloaded";
       break;
     }
@@ -258,18 +255,14 @@ bool Loop::draw(uint32_t index, double seconds) {
   state.changed.clear();
   if (state.truth_asked) ask_truth();
   panel.layout(session.chapter, session.scene, session.settings, session.device, pose, state);
-  if (!state.changed.empty()) {
-    apply_scene_knobs(session.settings, session.scene);
-    const auto rebuilds = [&](const std::string& name) { return session.settings.knob(name).rebuilds; };
-    if (std::any_of(state.changed.begin(), state.changed.end(), rebuilds)) {
-      swapchain.wait_for_all_frames();
-      rebuild();
-    }
+  if (!state.changed.empty()) apply_scene_knobs(session.settings, session.scene);
+  if (drawing.stale()) {
+    swapchain.wait_for_all_frames();
+    drawing.follow();
   }
   gpu::begin_commands(slot->commands);
-  record_frame(
-      session.context, *program, *display, targets,
-      {slot->commands, targets.picture, camera, slot->timer, index, session.options.seed, seconds, pose.position_km});
+  drawing.record({slot->commands, targets.picture, camera, slot->timer, index, session.options.seed, seconds,
+                  pose.position_km, std::exchange(cut, false)});
   present.record(slot->commands, targets.displayed, swapchain.image(image), swapchain.view(image), size);
   panel.record(slot->commands, image);
   gpu::end_commands(slot->commands);

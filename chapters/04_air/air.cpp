@@ -170,7 +170,7 @@ interop::Atmosphere make_atmosphere(const Scene& scene) {
 // [variant]
 AirVariant air_variant(const Scene& scene) {
   AirVariant variant;
-  for (const Effect& effect : effects(scene)) {  // the same list that --explain prints
+  for (const Constituent& effect : constituents(scene)) {  // the same list that --explain prints
     if (effect.name == "rayleigh") variant.rayleigh = effect.on;
     if (effect.name == "mie") variant.mie = effect.on;
     if (effect.name == "ozone") variant.ozone = effect.on;

@@ -15,12 +15,12 @@ int main(int argc, char** argv) {
       .whats_new = "A march along the view, at each sample the air on the way to the sun: the first true sky.",
       .try_next = "./welkin run 05 --scene sunset   (or: ./welkin compare 04 05 --scene sunset)",
       .sky = true,
-      .knobs = march_knobs(),
       .reference = {{"view.steps", "512"}, {"light.steps", "64"}, {"rule", "adapted"}},
       .standard_views =
           {{"noon", "horizon"}, {"sunset", "sun"}, {"twilight", "glow"}, {"orbit", "limb"}, {"alien", "horizon"}},
       .window = open_window_system,
-      .make = [](const app::Context& context) { return std::make_unique<SingleScattering>(context); }};
+      .effects = {air(), single_scattering()},
+      .probe = probe_single_scattering};
   return app::run(argc, argv, chapter);
   // [/chapter]
 }

@@ -1,44 +1,29 @@
-// Chapter 05's program: the ray march for pictures and for single rays.
+// Chapter 05's effect: the ray march that draws the picture, and the same march for single rays.
 #pragma once
 
 #include <vector>
 
-#include "chapters/04_air/air.hpp"
-#include "common/app/chapter.hpp"
+#include "chapters/04_air/air_block.hpp"
 
 namespace welkin {
 
-inline constexpr uint32_t kRuleAdapted = 5;  // of the choices of the knob `rule`: the one later chapters march by
+inline constexpr int kRuleAdapted = 5;  // of the choices of the knob `rule`: the one later chapters march by
 
 // The chapter's knobs: view.steps, light.steps, rule.
 std::vector<Knob> march_knobs();
+// The one of this name, as a later chapter takes it over.
+Knob march_knob(const std::string& name);
 
-// A probe's ray as the shader takes it. For cameras above the air the first point is where the ray enters it, found in
-// double: seen from 36 000 km, rounding the direction to float32 alone moves the tangent point and puts the limb's
-// transmittance off by 0.1 %.
-// Rays that miss the air start at its top, looking up: they see nothing, through nothing.
-struct MarchRay {
-  glm::vec4 view;  // xyz: direction in the local frame (z up), w: altitude in km
-  glm::vec4 sun;   // xyz: direction to the sun, same frame
-};
-MarchRay march_ray(const app::ProbeRay& ray, const Planet& planet);
+// Pass "march": a picture of the sky by single scattering, the sun's disc behind the air.
+app::Effect single_scattering();
 
-class SingleScattering : public app::Program {
- public:
-  explicit SingleScattering(const app::Context& context);
-  void set_target(const gpu::Image& target) override;
-  void draw(const app::Frame& frame) override;
-  void rebuild() override;
-  std::vector<app::ProbeResult> probe(std::span<const app::ProbeRay> rays) override;
+// --probe by the same march.
+std::vector<app::ProbeResult> probe_single_scattering(const app::Context& context, std::span<const app::ProbeRay> rays);
 
- private:
-  gpu::Specialization variant() const;
-  void update_air(VkCommandBuffer commands) const;
-
-  const app::Context context_;
-  gpu::Buffer air_;  // the uniform block of the atmosphere
-  gpu::ComputePipeline image_;
-  gpu::DescriptorSet image_set_;
+// Push constants of chapter 05's image.comp.
+struct MarchPush {
+  CameraRays camera;
+  int32_t view_steps, unused[3];
 };
 
 }  // namespace welkin

@@ -2,7 +2,7 @@
 // same; what a screen makes of it is decided here.
 #include "chapters/02_window/window.hpp"
 #include "chapters/05_single_scattering/single_scattering.hpp"
-#include "chapters/06_display/auto_display.hpp"
+#include "chapters/06_display/display.hpp"
 
 using namespace welkin;
 
@@ -15,13 +15,12 @@ int main(int argc, char** argv) {
       .whats_new = "A light meter that adapts, seven tone curves side by side, and no bands at dusk.",
       .try_next = "./welkin run 06 --scene sunset --set display.curve=compare",
       .sky = true,
-      .knobs = joined(march_knobs(), display_knobs()),
       .reference = {{"view.steps", "512"}, {"light.steps", "64"}, {"rule", "adapted"}},
       .standard_views =
           {{"noon", "horizon"}, {"sunset", "sun"}, {"twilight", "glow"}, {"orbit", "limb"}, {"alien", "horizon"}},
       .window = open_window_system,
-      .make = [](const app::Context& context) { return std::make_unique<SingleScattering>(context); },
-      .make_display = make_display};
+      .effects = {air(), single_scattering(), exposure(), display()},
+      .probe = probe_single_scattering};
   return app::run(argc, argv, chapter);
   // [/chapter]
 }

@@ -169,8 +169,7 @@ void GroundTruth::set_target(const gpu::Image& target) {
 
 // Writes the atmosphere into its block. Earlier frames may still read it: their reads come first.
 void GroundTruth::update_air(VkCommandBuffer commands) const {
-  interop::Atmosphere air = make_atmosphere(context_.scene);
-  if (context_.inject == "wrong-constant") air.rayleigh_scattering.x *= 1.1f;
+  const interop::Atmosphere air = air_of_device(context_);
   constexpr gpu::Use written{VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT};
   gpu::buffer_barrier(commands, air_.handle, {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT}, written);
   vkCmdUpdateBuffer(commands, air_.handle, 0, sizeof air, &air);
@@ -255,6 +254,14 @@ std::string GroundTruth::explain() const {
   text += fmt::format("  {} cut by the driver\n", unfinished_.as<uint32_t>()[0]);
   text += fmt::format("  {}\n", surfaces_ ? "first surfaces: from images" : "first surfaces: none, no image is read");
   return text;
+}
+
+app::Effect paths() {
+  return app::drawn_by("paths", 7, path_knobs(), [](const app::Context& context) { return std::make_unique<GroundTruth>(context); });
+}
+
+std::vector<app::ProbeResult> probe_paths(const app::Context& context, std::span<const app::ProbeRay> rays) {
+  return GroundTruth(context).probe(rays);
 }
 
 }  // namespace welkin

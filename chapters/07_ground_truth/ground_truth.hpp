@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "chapters/04_air/air.hpp"
+#include "chapters/04_air/air_block.hpp"
 #include "common/app/chapter.hpp"
 
 namespace welkin {
@@ -15,6 +15,10 @@ std::vector<Knob> path_knobs();
 
 // What a later chapter says it is measured against: 2048 paths a pixel.
 app::Truth path_truth();
+
+// The path tracer as an effect: its picture is a frame's first.
+app::Effect paths();
+std::vector<app::ProbeResult> probe_paths(const app::Context& context, std::span<const app::ProbeRay> rays);
 
 // Batches a number of samples is cut into, so that no invocation's loops come near what a software driver allows, and
 // the samples of each.

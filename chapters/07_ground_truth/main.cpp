@@ -1,7 +1,7 @@
 // Chapter 07, ground truth: light followed along random paths, all orders of scattering, nothing approximated but the
 // number of paths. Every later method is measured against it.
 #include "chapters/02_window/window.hpp"
-#include "chapters/06_display/auto_display.hpp"
+#include "chapters/06_display/display.hpp"
 #include "chapters/07_ground_truth/ground_truth.hpp"
 
 using namespace welkin;
@@ -16,13 +16,12 @@ int main(int argc, char** argv) {
       .try_next = "./welkin run 07 --scene sunset --frames 64   (or: --set orders=1, and watch the sky grow dark)",
       .sky = true,
       .stochastic = true,
-      .knobs = joined(path_knobs(), display_knobs()),
       .reference = {{"samples", "4096"}, {"orders", "0"}, {"tracking", "closed_form"}, {"spectral", "hero"}},
       .standard_views =
           {{"noon", "horizon"}, {"sunset", "sun"}, {"twilight", "glow"}, {"orbit", "limb"}, {"alien", "horizon"}},
       .window = open_window_system,
-      .make = [](const app::Context& context) { return std::make_unique<GroundTruth>(context); },
-      .make_display = make_display};
+      .effects = {paths(), exposure(), display()},
+      .probe = probe_paths};
   return app::run(argc, argv, chapter);
   // [/chapter]
 }

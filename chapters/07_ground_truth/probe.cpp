@@ -3,7 +3,7 @@
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
 
-#include "chapters/05_single_scattering/single_scattering.hpp"
+#include "chapters/05_single_scattering/probe.hpp"
 #include "chapters/07_ground_truth/ground_truth.hpp"
 
 namespace welkin {

@@ -1,7 +1,7 @@
 // Chapter 08, transmittance table: what the air lets through towards the sun is computed once, and then looked up. The
 // frame becomes a graph of passes that run only when what they depend on has changed.
 #include "chapters/02_window/window.hpp"
-#include "chapters/06_display/auto_display.hpp"
+#include "chapters/06_display/display.hpp"
 #include "chapters/08_transmittance_lut/table_sky.hpp"
 
 using namespace welkin;
@@ -17,7 +17,6 @@ int main(int argc, char** argv) {
       .try_next = "./welkin run 08 --headless --explain   (or: ./welkin compare 05 08)",
       .sky = true,
       .images = {"transmittance"},
-      .knobs = joined(table_sky_knobs(), display_knobs()),
       .reference = {{"view.steps", "512"},
                     {"rule", "adapted"},
                     {"transmittance.width", "1024"},
@@ -25,8 +24,8 @@ int main(int argc, char** argv) {
       .standard_views =
           {{"noon", "horizon"}, {"sunset", "sun"}, {"twilight", "glow"}, {"orbit", "limb"}, {"alien", "horizon"}},
       .window = open_window_system,
-      .make = [](const app::Context& context) { return std::make_unique<TableSky>(context); },
-      .make_display = make_display};
+      .effects = {air(), transmittance_table(), table_march(), exposure(), display()},
+      .probe = probe_table_march};
   return app::run(argc, argv, chapter);
   // [/chapter]
 }

@@ -1,35 +1,23 @@
-// Chapter 09's program: chapter 05's march, and all further orders of scattering from a table.
+// Chapter 09's effect: the first order marched as in chapter 05, all others by marching through the table.
 #pragma once
-
-#include <memory>
-#include <string>
-#include <vector>
 
 #include "chapters/09_multiple_scattering_lut/multiple_scattering_lut.hpp"
 
 namespace welkin {
 
-// view.steps of chapter 05, those of the table, and `tables`.
-std::vector<Knob> all_orders_knobs();
-
-class AllOrdersSky : public app::Program {
- public:
-  explicit AllOrdersSky(const app::Context& context);
-  ~AllOrdersSky() override;
-  void set_target(const gpu::Image& target) override;
-  void draw(const app::Frame& frame) override;
-  void rebuild() override;
-  std::vector<app::ProbeResult> probe(std::span<const app::ProbeRay> rays) override;
-  std::string explain() const override;
-  const gpu::Image* image(const std::string& name) const override;
-
- private:
-  struct Frames;  // the graph and what is in it; made anew when the table comes or goes
-  gpu::ComputePipeline make_pipeline(const Frames& frames, bool probe) const;
-
-  const app::Context context_;
-  std::unique_ptr<Frames> frames_;
-  const gpu::Image* target_ = nullptr;
+// The march of all orders, or of the first where there is no table: shader, constants and bindings but for what it
+// writes. Later chapters fall back on it. shader: "image" or "probe".
+graph::Step all_orders_step(const app::Context& context, app::Board& board, const std::string& shader);
+// Its push constants behind the camera: steps of both marches.
+struct MarchSteps {
+  int32_t view_steps, table_steps, count, unused;
 };
+// Pushes camera (where the shader takes it so) and steps, and covers the picture.
+void record_all_orders(const app::Context& context, const graph::Recorder& r, bool has_table, VkExtent2D size);
+
+// Pass "march": view.steps.
+app::Effect all_orders_march();
+
+std::vector<app::ProbeResult> probe_all_orders(const app::Context& context, std::span<const app::ProbeRay> rays);
 
 }  // namespace welkin

@@ -1,7 +1,7 @@
 // Chapter 09, multiple scattering: light that was scattered twice and more, from a table that is computed when the air
 // changes, and gathered along every ray.
 #include "chapters/02_window/window.hpp"
-#include "chapters/06_display/auto_display.hpp"
+#include "chapters/06_display/display.hpp"
 #include "chapters/07_ground_truth/ground_truth.hpp"
 #include "chapters/09_multiple_scattering_lut/all_orders_sky.hpp"
 
@@ -17,7 +17,6 @@ int main(int argc, char** argv) {
       .try_next = "./welkin compare 05 09 --scene twilight   (or: ./welkin run 09 --set orders=1)",
       .sky = true,
       .images = {"multiple_scattering"},
-      .knobs = joined(all_orders_knobs(), display_knobs()),
       .reference = {{"view.steps", "128"},
                     {"multiple_scattering.view_steps", "128"},
                     {"multiple_scattering.size", "64"},
@@ -28,8 +27,8 @@ int main(int argc, char** argv) {
       .standard_views =
           {{"noon", "horizon"}, {"sunset", "sun"}, {"twilight", "glow"}, {"orbit", "limb"}, {"alien", "horizon"}},
       .window = open_window_system,
-      .make = [](const app::Context& context) { return std::make_unique<AllOrdersSky>(context); },
-      .make_display = make_display};
+      .effects = {air(), multiple_scattering_table(), all_orders_march(), exposure(), display()},
+      .probe = probe_all_orders};
   return app::run(argc, argv, chapter);
   // [/chapter]
 }

@@ -7,20 +7,31 @@
 namespace welkin {
 namespace {
 
-constexpr VkDescriptorType kUniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
-constexpr VkDescriptorType kImage = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
-constexpr VkDescriptorType kTable = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-constexpr uint32_t kLayers = 7;  // of shaders/09_multiple_scattering_lut/table.glsl
-constexpr VkDescriptorType kBuffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+constexpr uint32_t kLayers = 7;    // of shaders/09_multiple_scattering_lut/table.glsl
 constexpr size_t kNodeBytes = 48;  // RayNode of shaders/09_multiple_scattering_lut/ray_nodes.glsl
-constexpr gpu::Use kEarlierRead{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT};
-constexpr gpu::Use kAnyRead{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
-                            VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
-                            VK_IMAGE_LAYOUT_GENERAL};
 
-struct NoPush {
-  int32_t unused[4] = {};
+// What the knobs ask for, rounded to what the shaders do.
+struct Plan {
+  bool published, half;
+  uint32_t side;
+  int directions, steps, orders;
+  uint32_t rays;  // that differ, for a sun anywhere: altitudes times zenith angles
 };
+
+Plan plan_of(const Scene& scene, const Settings& settings) {
+  Plan plan{.published = settings.choice("multiple_scattering.method") == "published",
+            .half = settings.choice("multiple_scattering.format") == "half",
+            .side = static_cast<uint32_t>(settings.integer("multiple_scattering.size")),
+            .directions = (settings.integer("multiple_scattering.directions") + 15) / 16 * 16,
+            .steps = (settings.integer("multiple_scattering.steps") + 3) / 4 * 4};
+  const int wanted = settings.integer("multiple_scattering.iterations");
+  plan.orders = plan.published ? 1 : wanted == 0 ? orders_of(make_atmosphere(scene)) : std::max(wanted, 3);
+  // Fibonacci's directions all have zenith angles of their own; the horizon's set stands in 8 rings, or 16.
+  const int rings = plan.directions >= 128 ? 16 : 8;
+  plan.rays = plan.side * static_cast<uint32_t>(
+                              settings.choice("multiple_scattering.set") == "fibonacci" ? plan.directions : rings);
+  return plan;
+}
 
 }  // namespace
 
@@ -34,6 +45,9 @@ std::vector<Knob> multiple_scattering_knobs() {
            .integer = true,
            .ladder = {1, 0},
            .rebuilds = true},
+          {.name = "tables",
+           .meaning = "what a frame computes: only what something changed for, or everything (to see what it costs)",
+           .choices = {"changed", "all"}},
           {.name = "multiple_scattering.method",
            .meaning = "what the table holds and how its series of orders is summed",
            .initial = 2,
@@ -124,145 +138,93 @@ int orders_of(const interop::Atmosphere& air) {
 }
 // [/orders_of]
 
-bool wants_multiple_scattering(const Settings& settings) { return settings.integer("orders") != 1; }
-
-MultipleScatteringLut::MultipleScatteringLut(const app::Context& context, graph::Graph& graph, const AirBlock& air)
-    : context_(context), graph_(graph), air_(air), sampler_(gpu::create_sampler(context.device)) {
-  make_images();
-  resource_ = graph.add("multiple scattering", table_);
-  graph.add({.name = "multiple scattering",
-             .accesses = {{air.resource(), gpu::kUniformRead}, {resource_, gpu::kComputeWrite}},
-             .record = [this](const app::Frame& frame) { record(frame); }});
-  rebuild();
-}
-
-void MultipleScatteringLut::make_images() {
-  const Settings& settings = context_.settings;
-  const uint32_t side = static_cast<uint32_t>(settings.integer("multiple_scattering.size"));
-  const VkExtent2D size{side, published() ? side : side * kLayers};
-  const VkFormat format = settings.choice("multiple_scattering.format") == "half" ? VK_FORMAT_R16G16B16A16_SFLOAT
-                                                                                  : VK_FORMAT_R32G32B32A32_SFLOAT;
-  constexpr VkImageUsageFlags kUsage =
-      VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
-  table_ = {};
-  orders_ = {};
-  table_ = gpu::create_image(context_.device, "multiple scattering", size, format, kUsage);
-  for (size_t i = 0; i < (published() ? 1 : orders_.size()); ++i)
-    orders_[i] =
-        gpu::create_image(context_.device, "orders " + std::to_string(i), size, VK_FORMAT_R32G32B32A32_SFLOAT, kUsage);
-  nodes_ = {};
-  nodes_ = gpu::create_buffer(context_.device, "ray nodes", kNodeBytes * rays() * static_cast<size_t>(steps() + 1),
-                              VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::device);
-}
-
-// Fibonacci's directions all have zenith angles of their own; the horizon's set stands in 8 rings, or 16.
-uint32_t MultipleScatteringLut::rays() const {
-  const int rings = directions() >= 128 ? 16 : 8;
-  return table_.size.width * static_cast<uint32_t>(context_.settings.choice("multiple_scattering.set") == "fibonacci"
-                                                       ? directions()
-                                                       : rings);
-}
-
-gpu::Specialization MultipleScatteringLut::variant() const {
-  gpu::Specialization constants = specialization(air_variant(context_.scene));
-  constants.push_back(static_cast<uint32_t>(context_.settings.integer("multiple_scattering.method")));
-  constants.push_back(static_cast<uint32_t>(context_.settings.integer("multiple_scattering.map")));
-  constants.push_back(table_.size.width);
-  return constants;
-}
-
-// [rebuild]
-void MultipleScatteringLut::rebuild() {
-  const Settings& settings = context_.settings;
-  const gpu::Device& device = context_.device;
-  make_images();
-  graph_.replace(resource_, table_);
-
-  gpu::Specialization gather = variant();
-  gather.push_back(static_cast<uint32_t>(directions()));
-  gather.push_back(static_cast<uint32_t>(settings.integer("multiple_scattering.set")));
-  gather.push_back(static_cast<uint32_t>(steps()));
-  gpu::Specialization close = variant();
-  close.push_back(!published());
-
-  const auto make = [&](gpu::ComputePipeline& pipeline, const std::string& shader, std::vector<gpu::Binding> bindings,
-                        const gpu::Specialization& constants) {
-    pipeline = gpu::create_compute_pipeline(device, "09_multiple_scattering_lut/" + shader + ".comp",
-                                            std::move(bindings), sizeof(NoPush), constants);
-  };
-  const auto make_set = [&](const gpu::ComputePipeline& pipeline) {
-    gpu::DescriptorSet set = gpu::create_descriptor_set(device, pipeline.set_layout, pipeline.bindings);
-    gpu::write_buffer(device, set, 0, kUniform, air_.buffer());
-    return set;
-  };
-  make(place_, "nodes", {{0, kUniform}, {4, kBuffer}}, gather);
-  place_set_ = make_set(place_);
-  gpu::write_buffer(device, place_set_, 4, kBuffer, nodes_);
-  make(first_, published() ? "published" : "first", {{0, kUniform}, {1, kImage}, {4, kBuffer}}, gather);
-  first_set_ = make_set(first_);
-  gpu::write_storage_image(device, first_set_, 1, orders_[kFirst]);
-  gpu::write_buffer(device, first_set_, 4, kBuffer, nodes_);
-  if (!published()) {
-    make(next_, "next", {{0, kUniform}, {1, kTable}, {2, kImage}, {3, kImage}, {4, kBuffer}}, gather);
-    for (size_t from = 0; from < next_sets_.size(); ++from) {
-      next_sets_[from] = make_set(next_);
-      gpu::write_sampled_image(device, next_sets_[from], 1, orders_[from], sampler_);
-      gpu::write_storage_image(device, next_sets_[from], 2, orders_[kFirst]);
-      gpu::write_storage_image(device, next_sets_[from], 3, orders_[1 + from % 3]);
-      gpu::write_buffer(device, next_sets_[from], 4, kBuffer, nodes_);
-    }
+// [resources]
+// The table, and what it is gathered from: the first order, three images of later orders that take turns, and the nodes
+// of the rays light is gathered along.
+struct TableResources {
+  graph::Resource table, nodes;
+  std::vector<graph::Resource> orders;
+  graph::Resource after(int gathered) const {
+    return gathered == 1 ? orders[0] : orders[1 + static_cast<size_t>(gathered - 2) % 3];
   }
-  make(close_, table_.format == VK_FORMAT_R32G32B32A32_SFLOAT ? "close_float" : "close_half",
-       {{0, kUniform}, {1, kImage}, {2, kImage}, {3, kImage}, {4, kImage}}, close);
-  close_set_ = make_set(close_);
-  const int last = orders_gathered();
-  for (int less = 0; less < 3; ++less)
-    gpu::write_storage_image(device, close_set_, static_cast<uint32_t>(1 + less),
-                             orders_[place_of(std::max(last - less, 1))]);
-  gpu::write_storage_image(device, close_set_, 4, table_);
-  graph_.redo();
-}
-// [/rebuild]
+};
 
-int MultipleScatteringLut::orders_gathered() const {
-  if (published()) return 1;
-  const int wanted = context_.settings.integer("multiple_scattering.iterations");
-  return wanted == 0 ? orders_of(make_atmosphere(context_.scene)) : std::max(wanted, 3);
+static TableResources add_resources(graph::Graph& graph, const Plan& plan) {
+  const VkExtent2D size{plan.side, plan.published ? plan.side : plan.side * kLayers};
+  TableResources resources;
+  resources.table = graph.add_image(
+      "multiple scattering",
+      {.size = size, .format = plan.half ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT});
+  for (int i = 0; i < (plan.published ? 1 : 4); ++i)
+    resources.orders.push_back(graph.add_image("orders " + std::to_string(i), {.size = size}));
+  resources.nodes = graph.add_buffer("ray nodes", {kNodeBytes * plan.rays * static_cast<size_t>(plan.steps + 1)});
+  return resources;
 }
+// [/resources]
 
-std::string MultipleScatteringLut::explain() const {
-  if (published())
-    return "  multiple scattering  on   two orders, and a geometric series for the rest: the published method\n";
-  return fmt::format("  multiple scattering  on   {} orders gathered: {}\n", orders_gathered(),
-                     context_.settings.integer("multiple_scattering.iterations") == 0
-                         ? "the air's optical depth asks for them"
-                         : "multiple_scattering.iterations");
-}
-
-// [record]
-// The images of the orders are the pass's own: the graph sees the table they end in.
-void MultipleScatteringLut::record(const app::Frame& frame) const {
-  const uint32_t side = table_.size.width;
-  const auto write = [&](const gpu::Image& image) {
-    gpu::image_barrier(frame.commands, image.handle, kEarlierRead, gpu::kComputeWrite);
+// [steps]
+// One pass: the nodes, the first order, one order after another, and the end of the series.
+static graph::Pass gathering(const AirBlock& air, const Plan& plan, const TableResources& to,
+                             const gpu::Constants& table, const gpu::Constants& gather) {
+  graph::Pass pass{.name = "multiple scattering"};
+  const auto add = [&](const std::string& name, const gpu::Constants& constants, std::vector<graph::Binding> bindings,
+                       auto record) {
+    bindings.push_back({"Air", air.block});
+    pass.steps.push_back({.shader = "09_multiple_scattering_lut/" + name + ".comp",
+                          .constants = joined(air.constants, constants),
+                          .bindings = std::move(bindings),
+                          .record = record});
   };
-  const auto read = [&](const gpu::Image& image) {
-    gpu::image_barrier(frame.commands, image.handle, gpu::kComputeWrite, kAnyRead);
-  };
-  gpu::buffer_barrier(frame.commands, nodes_.handle, kEarlierRead, gpu::kComputeWrite);
-  gpu::dispatch(frame.commands, place_, place_set_, NoPush{}, (rays() * static_cast<uint32_t>(steps() / 4) + 31) / 32);
-  gpu::buffer_barrier(frame.commands, nodes_.handle, gpu::kComputeWrite, gpu::kComputeRead);
-  write(orders_[kFirst]);
-  gpu::dispatch(frame.commands, first_, first_set_, NoPush{}, side, side);
-  read(orders_[kFirst]);
-  for (int n = 2; n <= orders_gathered(); ++n) {
-    const gpu::Image& to = orders_[place_of(n)];
-    write(to);
-    gpu::dispatch(frame.commands, next_, next_sets_[place_of(n - 1)], NoPush{}, side, side);
-    read(to);
-  }
-  gpu::dispatch_over(frame.commands, close_, close_set_, NoPush{}, {side, side});
+  const auto texels = [side = plan.side](const graph::Recorder& r) { r.dispatch(side, side); };
+  const uint32_t panels = plan.rays * static_cast<uint32_t>(plan.steps / 4);
+  add("nodes", gather, {{"Nodes", to.nodes}}, [panels](const graph::Recorder& r) { r.dispatch((panels + 31) / 32); });
+  add(plan.published ? "published" : "first", gather, {{"Nodes", to.nodes}, {"orders", to.orders[0]}}, texels);
+  for (int n = 2; n <= plan.orders; ++n)
+    add("next", gather,
+        {{"Nodes", to.nodes}, {"before", to.after(n - 1)}, {"first", to.orders[0]}, {"orders", to.after(n)}}, texels);
+  gpu::Constants close = table;
+  close.push_back({"EXTRAPOLATE", !plan.published});
+  const auto less = [&](int orders) { return to.after(std::max(plan.orders - orders, 1)); };
+  add(plan.half ? "close_half" : "close_float", close,
+      {{"orders", less(0)}, {"one_less", less(1)}, {"two_less", less(2)}, {"kept", to.table}},
+      [side = plan.side](const graph::Recorder& r) {
+        r.dispatch_over({side, side});
+      });
+  return pass;
 }
-// [/record]
+// [/steps]
+
+// [effect]
+app::Effect multiple_scattering_table() {
+  app::Effect effect{.name = "multiple scattering", .chapter = 9, .knobs = multiple_scattering_knobs()};
+  effect.wanted = [](const Scene& scene, const Settings& settings) -> app::Wanted {
+    if (settings.integer("orders") == 1) return {false, "orders is 1: single scattering is all there is"};
+    const Plan plan = plan_of(scene, settings);
+    if (plan.published) return {true, "two orders, and a geometric series for the rest: the published method"};
+    return {true, fmt::format("{} orders gathered: {}", plan.orders,
+                              settings.integer("multiple_scattering.iterations") == 0
+                                  ? "the air's optical depth asks for them"
+                                  : "multiple_scattering.iterations")};
+  };
+  effect.key = [](const Scene& scene, const Settings& settings) {
+    return fmt::format("{} orders", plan_of(scene, settings).orders);
+  };
+  effect.declare = [](app::Builder& builder, app::Board& board) {
+    const Settings& settings = builder.context.settings;
+    const AirBlock& air = board.get<AirBlock>("the air");
+    const Plan plan = plan_of(builder.context.scene, settings);
+    const gpu::Constants table{{"MS_METHOD", settings.integer("multiple_scattering.method"), true},
+                               {"MS_MAP", settings.integer("multiple_scattering.map"), true},
+                               {"MS_SIZE", static_cast<int>(plan.side), true}};
+    const gpu::Constants gather = joined(table, {{"DIRECTIONS", plan.directions},
+                                                 {"DIRECTION_SET", settings.integer("multiple_scattering.set")},
+                                                 {"STEPS", plan.steps}});
+    const TableResources resources = add_resources(builder.graph, plan);
+    builder.graph.add(gathering(air, plan, resources, table, gather));
+    board.offer(MultipleScatteringTable{resources.table, table});
+  };
+  return effect;
+}
+// [/effect]
 
 }  // namespace welkin

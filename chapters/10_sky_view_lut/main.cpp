@@ -1,8 +1,9 @@
 // Chapter 10, sky view table: the sky seen from where the camera is, computed at some twenty thousand directions and
 // looked up for every pixel; and the direct march where a table of one altitude cannot show the planet.
 #include "chapters/02_window/window.hpp"
-#include "chapters/06_display/auto_display.hpp"
+#include "chapters/06_display/display.hpp"
 #include "chapters/07_ground_truth/ground_truth.hpp"
+#include "chapters/08_transmittance_lut/transmittance_lut.hpp"
 #include "chapters/10_sky_view_lut/sky.hpp"
 
 using namespace welkin;
@@ -18,14 +19,13 @@ int main(int argc, char** argv) {
       .try_next = "./welkin compare 05 10 --scene sunset   (or: ./welkin run 10 --headless --explain)",
       .sky = true,
       .images = {"sky_view", "transmittance", "multiple_scattering"},
-      .knobs = joined(sky_knobs(), display_knobs()),
       .reference = {{"sky_view.method", "march"}, {"view.steps", "128"}, {"multiple_scattering.view_steps", "64"}},
       .truth = path_truth(),
       .standard_views =
           {{"noon", "horizon"}, {"sunset", "sun"}, {"twilight", "glow"}, {"orbit", "limb"}, {"alien", "horizon"}},
       .window = open_window_system,
-      .make = [](const app::Context& context) { return std::make_unique<SkyProgram>(context); },
-      .make_display = make_display};
+      .effects = {air(), transmittance_table(), multiple_scattering_table(), sky_view(), sky(), exposure(), display()},
+      .probe = probe_sky};
   return app::run(argc, argv, chapter);
   // [/chapter]
 }

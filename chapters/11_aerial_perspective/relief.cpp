@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <glm/geometric.hpp>
 #include <glm/gtc/packing.hpp>
 #include <glm/trigonometric.hpp>
@@ -16,6 +17,7 @@ namespace {
 constexpr VkImageUsageFlags kMapUsage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
 constexpr int kShadowSteps = 96;
 constexpr double kShadowGrowth = 0.06;  // of the step, per distance: 96 steps reach across the map
+constexpr double kEyes_km = 0.002;      // a camera in a hill is lifted to this height above it
 constexpr gpu::Use kDepthWrite{
     VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
     VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
@@ -28,6 +30,12 @@ struct ShadowPush {
 
 struct RingPush {
   glm::vec4 right, up, forward, position, ring;
+};
+
+struct Mesh {
+  int cells = 0;
+  gpu::Buffer indices;
+  uint32_t whole_count = 0, ring_count = 0;
 };
 
 // Makes a map on the device and fills it, once, before any frame.
@@ -61,146 +69,84 @@ std::vector<uint64_t> halves(const std::vector<std::array<uint8_t, 4>>& cover) {
   return texels;
 }
 
-// Depth is fetched texel by texel, and its format need not have a filter.
-gpu::Sampler nearest_sampler(const gpu::Device& device) {
-  const VkSamplerCreateInfo info{.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
-                                 .addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
-                                 .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE};
-  VkSampler sampler = VK_NULL_HANDLE;
-  gpu::check(vkCreateSampler(device, &info, nullptr, &sampler), "vkCreateSampler");
-  return gpu::Sampler(device, sampler);
+// The sun in the global frame, where it does not turn as the camera moves.
+glm::dvec3 global_sun(const app::Frame& frame, double ground_radius_km) {
+  const app::LocalFrame at = app::local_frame({.position_km = frame.position_km}, ground_radius_km);
+  const glm::dvec3 local(frame.camera.sun);
+  return glm::normalize(at.east * local.x + at.north * local.y + at.up * local.z);
+}
+
+// Straight up: directions stay what they are.
+void lift_out_of_ground(const TerrainMap& map, double ground_radius_km, CameraRays& camera, glm::dvec3& position_km) {
+  const app::CameraPose pose{.position_km = position_km};
+  const glm::dvec3 up = app::local_frame(pose, ground_radius_km).up;
+  const double below_km = height_at(map, up.x * ground_radius_km, up.y * ground_radius_km),
+               stands_km = app::altitude_km(pose, ground_radius_km);
+  const double altitude_km = std::max(stands_km, below_km > 0.0 ? below_km + kEyes_km : 0.0);
+  position_km += up * (altitude_km - stands_km);
+  if (altitude_km > stands_km)
+    camera.altitude_km = static_cast<float>(altitude_km), camera.altitude_m = static_cast<float>(altitude_km * 1000.0);
+}
+
+app::Wanted terrain_wanted(const Scene& scene) {
+  return {scene.terrain.has_value(), scene.terrain ? "[terrain] in scene" : "no [terrain] in scene"};
+}
+
+// Everything the maps are made from; of a file also when it was written.
+std::string key_of_maps(const Scene& scene) {
+  const Terrain& t = *scene.terrain;
+  std::error_code missing;
+  const auto written = t.height_map.empty() ? std::filesystem::file_time_type{}
+                                            : std::filesystem::last_write_time(t.height_map, missing);
+  return fmt::format("{} {} {} {} {} {} {}", t.height_map, written.time_since_epoch().count(), t.extent_km, t.height_km,
+                     t.size, t.seed, scene.planet.ground_radius_km);
 }
 
 }  // namespace
 
 // [knobs]
-std::vector<Knob> terrain_knobs() {
-  return {{.name = "terrain.cells",
-           .unit = "cells",
-           .meaning = "cells across a ring of the mesh; the innermost are as large as the map's samples",
-           .minimum = 32,
-           .maximum = 512,
-           .initial = 128,
-           .integer = true,
-           .rebuilds = true},
-          {.name = "terrain.shadow_size",
-           .unit = "texels",
-           .meaning = "side of the map of shadows",
-           .minimum = 64,
-           .maximum = 4096,
-           .initial = 512,
-           .integer = true,
-           .rebuilds = true}};
+static Knob cells_knob() {
+  return {.name = "terrain.cells",
+          .unit = "cells",
+          .meaning = "cells across a ring of the mesh; the innermost are as large as the map's samples",
+          .minimum = 32,
+          .maximum = 512,
+          .initial = 128,
+          .integer = true,
+          .rebuilds = true};
 }
+
+static Knob shadow_knob() {
+  return {.name = "terrain.shadow_size",
+          .unit = "texels",
+          .meaning = "side of the map of shadows",
+          .minimum = 64,
+          .maximum = 4096,
+          .initial = 512,
+          .integer = true,
+          .rebuilds = true};
+}
+
+std::vector<Knob> terrain_knobs() { return {cells_knob(), shadow_knob()}; }
 // [/knobs]
 
-Standpoint standpoint(const app::Frame& frame, double ground_radius_km) {
-  const app::CameraPose pose{.position_km = frame.position_km};
-  const app::LocalFrame local = app::local_frame(pose, ground_radius_km);
-  return {frame.position_km, local.east, local.north, local.up, app::altitude_km(pose, ground_radius_km)};
-}
-
-bool Watch::differs(const app::Frame& frame) const {
+bool ViewChange::differs(const app::Frame& frame) const {
   CameraRays now = frame.camera;
   now.time_s = 0.0f, now.seed = now.frame = 0;
   return fresh_ || std::memcmp(&now, &camera_, sizeof now) != 0 || frame.position_km != position_km_;
 }
 
-void Watch::note(const app::Frame& frame) {
+void ViewChange::note(const app::Frame& frame) {
   camera_ = frame.camera;
   camera_.time_s = 0.0f, camera_.seed = camera_.frame = 0;
   position_km_ = frame.position_km, fresh_ = false;
 }
 
-Relief::Relief(const app::Context& context, graph::Graph& graph)
-    : context_(context),
-      graph_(graph),
-      map_(make_terrain_map(*context.scene.terrain)),
-      sampler_(gpu::create_sampler(context.device)),
-      depth_sampler_(nearest_sampler(context.device)),
-      heights_(upload(context.device, "terrain heights", VK_FORMAT_R32_SFLOAT, map_.size, map_.height_km)),
-      slopes_(upload(context.device, "terrain slopes", VK_FORMAT_R32G32_SFLOAT, map_.size, map_.slope)),
-      cover_(upload(context.device, "terrain cover", VK_FORMAT_R16G16B16A16_SFLOAT, map_.size, halves(map_.cover))) {
-  // Only heights are asked for again, where the camera stands.
-  map_.slope = {}, map_.cover = {};
-  if (has_shadows()) {
-    make_shadow_image();
-    shadow_resource_ = graph.add("terrain shadows", shadows_);
-    graph.add(
-        {.name = "terrain shadows",
-         .accesses = {{shadow_resource_, gpu::kComputeWrite}},
-         .record = [this](const app::Frame& frame) { draw_shadows(frame); },
-         .changed = [this](const app::Frame& frame) { return glm::length(sun_of(frame) - shadowed_from_) > 1e-6; }});
-  }
-  depth_resource_ = graph.add("terrain depth", depth_);
-  graph.add({.name = "terrain",
-             .accesses = {{depth_resource_, kDepthWrite}},
-             .record = [this](const app::Frame& frame) { watch_.note(frame), draw_mesh(frame); },
-             .changed = [this](const app::Frame& frame) { return watch_.differs(frame); }});
-  rebuild();
-}
-
-void Relief::make_shadow_image() {
-  const uint32_t side = static_cast<uint32_t>(context_.settings.integer("terrain.shadow_size"));
-  shadows_ = gpu::create_image(context_.device, "terrain shadows", {side, side}, VK_FORMAT_R32G32_SFLOAT,
-                               VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT);
-}
-
-void Relief::set_size(VkExtent2D size) {
-  depth_ = gpu::create_image(
-      context_.device, "terrain depth", size, VK_FORMAT_D32_SFLOAT,
-      VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
-  graph_.replace(depth_resource_, depth_);
-}
-
-// [rebuild]
-void Relief::rebuild() {
-  const gpu::Device& device = context_.device;
-  const int cells =
-      context_.settings.integer("terrain.cells") / 8 * 8;  // so that a ring's hole is whole cells, wherever it is
-  if (cells != cells_) make_mesh(cells);
-  make_mesh_pipeline(cells);
-  if (has_shadows()) {
-    if (shadows_.size.width != static_cast<uint32_t>(context_.settings.integer("terrain.shadow_size"))) {
-      make_shadow_image();
-      graph_.replace(shadow_resource_, shadows_);
-    }
-    shadow_pipeline_ = gpu::create_compute_pipeline(
-        device, "11_aerial_perspective/shadow.comp",
-        {{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, {1, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}}, sizeof(ShadowPush),
-        {kShadowSteps});
-    if (shadow_set_.handle == VK_NULL_HANDLE)
-      shadow_set_ = gpu::create_descriptor_set(device, shadow_pipeline_.set_layout, shadow_pipeline_.bindings);
-    gpu::write_sampled_image(device, shadow_set_, 0, heights_, sampler_);
-    gpu::write_storage_image(device, shadow_set_, 1, shadows_);
-  }
-  graph_.redo(depth_resource_);
-  if (has_shadows()) graph_.redo(shadow_resource_);
-}
-// [/rebuild]
-
-// The sun in the global frame, where it does not turn as the camera moves.
-glm::dvec3 Relief::sun_of(const app::Frame& frame) const {
-  const Standpoint at = standpoint(frame, context_.scene.planet.ground_radius_km);
-  const glm::dvec3 local(frame.camera.sun);
-  return glm::normalize(at.east * local.x + at.north * local.y + at.up * local.z);
-}
-
-void Relief::draw_shadows(const app::Frame& frame) {
-  shadowed_from_ = sun_of(frame);
-  const Scene& scene = context_.scene;
-  const int side = static_cast<int>(shadows_.size.width);
-  const ShadowPush push{{shadowed_from_, glm::radians(scene.sun.angular_radius_deg)},
-                        {map_.extent_km, scene.planet.ground_radius_km, map_.extent_km / map_.size, kShadowGrowth},
-                        {side, side, 0, 0}};
-  gpu::dispatch_over(frame.commands, shadow_pipeline_, shadow_set_, push, shadows_.size);
-}
-
 // [mesh]
 // Triangles of a square of cells, and of four squares with a hole in the middle: the ring inside sits on this one's
 // cells, but as both snap to their own grids it may be a cell to the east or to the north.
-void Relief::make_mesh(int cells) {
-  cells_ = cells;
+static Mesh make_mesh(const gpu::Device& device, int cells) {
+  Mesh mesh{.cells = cells};
   std::vector<uint32_t> indices;
   const auto add = [&](int hole_x, int hole_y) {
     const int quarter = cells / 4;
@@ -216,148 +162,168 @@ void Relief::make_mesh(int cells) {
         }
   };
   add(-1, -1);
-  whole_count_ = static_cast<uint32_t>(indices.size());
+  mesh.whole_count = static_cast<uint32_t>(indices.size());
   for (const int y : {0, 1})
     for (const int x : {0, 1}) add(x, y);
-  ring_count_ = (static_cast<uint32_t>(indices.size()) - whole_count_) / 4;
+  mesh.ring_count = (static_cast<uint32_t>(indices.size()) - mesh.whole_count) / 4;
   // Into the device's own memory: a frame reads them all, and the host's lies behind a bus.
-  const gpu::Buffer staging = gpu::create_buffer(context_.device, "staging", indices.size() * sizeof(uint32_t),
+  const gpu::Buffer staging = gpu::create_buffer(device, "staging", indices.size() * sizeof(uint32_t),
                                                  VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Where::upload);
   std::memcpy(staging.mapped, indices.data(), staging.bytes);
-  indices_ =
-      gpu::create_buffer(context_.device, "terrain triangles", staging.bytes,
+  mesh.indices =
+      gpu::create_buffer(device, "terrain triangles", staging.bytes,
                          VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Where::device);
-  const gpu::CommandPool pool = gpu::create_command_pool(context_.device);
-  gpu::run_once(context_.device, pool, [&](VkCommandBuffer commands) {
+  const gpu::CommandPool pool = gpu::create_command_pool(device);
+  gpu::run_once(device, pool, [&](VkCommandBuffer commands) {
     const VkBufferCopy copy{0, 0, staging.bytes};
-    vkCmdCopyBuffer(commands, staging.handle, indices_.handle, 1, &copy);
-    gpu::buffer_barrier(commands, indices_.handle, gpu::kTransferWrite,
+    vkCmdCopyBuffer(commands, staging.handle, mesh.indices.handle, 1, &copy);
+    gpu::buffer_barrier(commands, mesh.indices.handle, gpu::kTransferWrite,
                         {VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT, VK_ACCESS_2_INDEX_READ_BIT});
   });
+  return mesh;
 }
 
-void Relief::draw_mesh(const app::Frame& frame) const {
+static void draw_mesh(const app::Context& context, const TerrainMap& map, const Mesh& mesh, graph::Resource depth_image,
+                      const graph::Recorder& r) {
+  const app::Frame& frame = r.frame;
+  const gpu::Image& target = r.graph.image(depth_image);
   const VkCommandBuffer commands = frame.commands;
   const VkRenderingAttachmentInfo depth{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
-                                        .imageView = depth_.view,
+                                        .imageView = target.view,
                                         .imageLayout = VK_IMAGE_LAYOUT_GENERAL,
                                         .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
                                         .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
                                         .clearValue = {.depthStencil = {0.0f, 0}}};
-  const VkRect2D area{{0, 0}, depth_.size};
-  const VkViewport viewport{0.0f, 0.0f, static_cast<float>(depth_.size.width), static_cast<float>(depth_.size.height),
+  const VkRect2D area{{0, 0}, target.size};
+  const VkViewport viewport{0.0f, 0.0f, static_cast<float>(target.size.width), static_cast<float>(target.size.height),
                             0.0f, 1.0f};
   const VkRenderingInfo rendering{
       .sType = VK_STRUCTURE_TYPE_RENDERING_INFO, .renderArea = area, .layerCount = 1, .pDepthAttachment = &depth};
   vkCmdBeginRendering(commands, &rendering);
   vkCmdSetViewport(commands, 0, 1, &viewport);
   vkCmdSetScissor(commands, 0, 1, &area);
-  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, mesh_pipeline_);
-  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, mesh_layout_, 0, 1, &mesh_set_.handle, 0, nullptr);
-  vkCmdBindIndexBuffer(commands, indices_.handle, 0, VK_INDEX_TYPE_UINT32);
-  const double radius = context_.scene.planet.ground_radius_km;
-  const Standpoint at = standpoint(frame, radius);
+  vkCmdBindIndexBuffer(commands, mesh.indices.handle, 0, VK_INDEX_TYPE_UINT32);
+  const double radius = context.scene.planet.ground_radius_km;
+  const app::LocalFrame at = app::local_frame({.position_km = frame.position_km}, radius);
   const auto global = [&](const glm::vec3& v) {
     return at.east * double(v.x) + at.north * double(v.y) + at.up * double(v.z);
   };
   const glm::dvec2 below(at.up.x * radius, at.up.y * radius);
   RingPush push{{global(frame.camera.right), radius},
-                {global(frame.camera.up), map_.extent_km},
+                {global(frame.camera.up), map.extent_km},
                 {global(frame.camera.forward), kNear_km},
-                {at.position_km, 0.0},
+                {frame.position_km, 0.0},
                 {0.0, 0.0, below}};
   // Rings from the camera outwards until one reaches beyond the map on all sides.
-  double cell_km = map_.extent_km / map_.size;
+  double cell_km = map.extent_km / map.size;
   glm::dvec2 inner(0.0);
-  const double reach_km = 0.5 * map_.extent_km + std::max(std::abs(below.x), std::abs(below.y));
+  const double reach_km = 0.5 * map.extent_km + std::max(std::abs(below.x), std::abs(below.y));
   for (int level = 0; level < 24; ++level, cell_km *= 2.0) {
     const glm::dvec2 middle = glm::floor(below / (2.0 * cell_km)) * 2.0 * cell_km;
     push.position.w = static_cast<float>(cell_km), push.ring.x = static_cast<float>(middle.x),
     push.ring.y = static_cast<float>(middle.y);
-    vkCmdPushConstants(commands, mesh_layout_, VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof push, &push);
+    r.push(push);
     if (level == 0) {
-      vkCmdDrawIndexed(commands, whole_count_, 1, 0, 0, 0);
+      vkCmdDrawIndexed(commands, mesh.whole_count, 1, 0, 0, 0);
     } else {
       const uint32_t east = inner.x > middle.x ? 1 : 0, north = inner.y > middle.y ? 1 : 0;
-      vkCmdDrawIndexed(commands, ring_count_, 1, whole_count_ + (2 * north + east) * ring_count_, 0, 0);
+      vkCmdDrawIndexed(commands, mesh.ring_count, 1, mesh.whole_count + (2 * north + east) * mesh.ring_count, 0, 0);
     }
     inner = middle;
-    if ((0.5 * cells_ - 4.0) * cell_km > reach_km) break;
+    if ((0.5 * mesh.cells - 4.0) * cell_km > reach_km) break;
   }
   vkCmdEndRendering(commands);
 }
 // [/mesh]
 
-// [mesh_pipeline]
-void Relief::make_mesh_pipeline(int cells) {
-  const gpu::Device& device = context_.device;
-  const std::vector<gpu::Binding> bindings{{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_SHADER_STAGE_VERTEX_BIT}};
-  mesh_set_layout_ = gpu::create_set_layout(device, bindings);
-  mesh_layout_ = gpu::create_pipeline_layout(device, mesh_set_layout_, VK_SHADER_STAGE_VERTEX_BIT, sizeof(RingPush));
-  const VkSpecializationMapEntry entry{.constantID = 0, .offset = 0, .size = sizeof cells};
-  const VkSpecializationInfo special{1, &entry, sizeof cells, &cells};
-  const gpu::ShaderModule vertex = gpu::create_shader_module(device, "11_aerial_perspective/ring.vert");
-  // One stage: there is no colour, so there is no fragment shader. Back faces count: a camera may look up a slope from
-  // below.
-  const VkPipelineShaderStageCreateInfo stage{.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                                              .stage = VK_SHADER_STAGE_VERTEX_BIT,
-                                              .module = vertex,
-                                              .pName = "main",
-                                              .pSpecializationInfo = &special};
-  const VkPipelineVertexInputStateCreateInfo input{.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
-  const VkPipelineInputAssemblyStateCreateInfo assembly{
-      .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
-      .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST};
-  const VkPipelineViewportStateCreateInfo viewport{
-      .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO, .viewportCount = 1, .scissorCount = 1};
-  const VkPipelineRasterizationStateCreateInfo raster{
-      .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
-      .polygonMode = VK_POLYGON_MODE_FILL,
-      .cullMode = VK_CULL_MODE_NONE,
-      .lineWidth = 1.0f};
-  const VkPipelineMultisampleStateCreateInfo samples{.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
-                                                     .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT};
-  // Reversed: what is nearer has the larger depth.
-  const VkPipelineDepthStencilStateCreateInfo depth{.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
-                                                    .depthTestEnable = VK_TRUE,
-                                                    .depthWriteEnable = VK_TRUE,
-                                                    .depthCompareOp = VK_COMPARE_OP_GREATER};
-  const VkDynamicState states[]{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
-  const VkPipelineDynamicStateCreateInfo dynamic{
-      .sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO, .dynamicStateCount = 2, .pDynamicStates = states};
-  const VkPipelineRenderingCreateInfo rendering{.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
-                                                .depthAttachmentFormat = VK_FORMAT_D32_SFLOAT};
-  const VkGraphicsPipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
-                                          .pNext = &rendering,
-                                          .stageCount = 1,
-                                          .pStages = &stage,
-                                          .pVertexInputState = &input,
-                                          .pInputAssemblyState = &assembly,
-                                          .pViewportState = &viewport,
-                                          .pRasterizationState = &raster,
-                                          .pMultisampleState = &samples,
-                                          .pDepthStencilState = &depth,
-                                          .pDynamicState = &dynamic,
-                                          .layout = mesh_layout_};
-  VkPipeline handle = VK_NULL_HANDLE;
-  gpu::check(vkCreateGraphicsPipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &handle),
-             "vkCreateGraphicsPipelines");
-  mesh_pipeline_ = gpu::PipelineHandle(device, handle);
-  mesh_set_ = gpu::create_descriptor_set(device, mesh_set_layout_, bindings);
-  gpu::write_sampled_image(device, mesh_set_, 0, heights_, sampler_);
-}
-// [/mesh_pipeline]
+// [terrain]
+app::Effect terrain() {
+  app::Effect effect{.name = "terrain", .chapter = 11, .knobs = {cells_knob()}};
+  effect.wanted = [](const Scene& scene, const Settings&) { return terrain_wanted(scene); };
+  effect.key = [](const Scene& scene, const Settings&) { return key_of_maps(scene); };
+  effect.declare = [](app::Builder& builder, app::Board& board) {
+    const app::Context& context = builder.context;
+    const gpu::Device& device = context.device;
+    TerrainMap made = make_terrain_map(*context.scene.terrain);
+    TerrainMaps maps;
+    maps.heights = builder.graph.add_filled(
+        "terrain heights", upload(device, "terrain heights", VK_FORMAT_R32_SFLOAT, made.size, made.height_km));
+    maps.slopes = builder.graph.add_filled(
+        "terrain slopes", upload(device, "terrain slopes", VK_FORMAT_R32G32_SFLOAT, made.size, made.slope));
+    maps.cover = builder.graph.add_filled(
+        "terrain cover", upload(device, "terrain cover", VK_FORMAT_R16G16B16A16_SFLOAT, made.size, halves(made.cover)));
+    maps.depth = builder.graph.add_image(
+        "terrain depth", {.format = VK_FORMAT_D32_SFLOAT,
+                          .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
+                                   VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
+    made.slope = {}, made.cover = {};  // only heights are asked for again, where the camera stands
+    maps.map = std::make_shared<const TerrainMap>(std::move(made));
+    board.offer(maps);
 
-Lifted lifted(const app::Frame& frame, const TerrainMap& map, double ground_radius_km) {
-  constexpr double kEyes_km = 0.002;  // a camera in a hill is lifted to this height above it
-  const Standpoint at = standpoint(frame, ground_radius_km);
-  const double ground_km = height_at(map, at.up.x * ground_radius_km, at.up.y * ground_radius_km);
-  const double altitude_km = std::max(at.altitude_km, ground_km > 0.0 ? ground_km + kEyes_km : 0.0);
-  Lifted result{frame.camera, at.position_km + at.up * (altitude_km - at.altitude_km)};
-  if (altitude_km > at.altitude_km)
-    result.camera.altitude_km = static_cast<float>(altitude_km),
-    result.camera.altitude_m = static_cast<float>(altitude_km * 1000.0);
-  return result;
+    const int cells =
+        context.settings.integer("terrain.cells") / 8 * 8;  // so that a ring's hole is whole cells, wherever it is
+    const auto mesh = std::make_shared<const Mesh>(make_mesh(device, cells));
+    const auto seen = std::make_shared<ViewChange>();
+    graph::Pass pass{.name = "terrain", .changed = [seen](const app::Frame& frame) { return seen->differs(frame); }};
+    pass.steps.push_back({.shader = "11_aerial_perspective/ring.vert",
+                          .constants = {{"CELLS", cells}},
+                          .raster = gpu::Raster{.depth = VK_FORMAT_D32_SFLOAT},
+                          .bindings = {{"height_map", maps.heights}},
+                          .accesses = {{maps.depth, kDepthWrite}},
+                          .record = [context, mesh, seen, maps](const graph::Recorder& r) {
+                            seen->note(r.frame);
+                            draw_mesh(context, *maps.map, *mesh, maps.depth, r);
+                          }});
+    builder.graph.add(std::move(pass));
+    const double radius_km = context.scene.planet.ground_radius_km;
+    builder.adjust_camera = [map = maps.map, radius_km](CameraRays& camera, glm::dvec3& position_km) {
+      lift_out_of_ground(*map, radius_km, camera, position_km);
+    };
+    builder.explain = [map = maps.map] {
+      return fmt::format("terrain: {} x {} samples of {:.0f} m, up to {:.2f} km\n", map->size, map->size,
+                         1e3 * map->extent_km / map->size, map->highest_km);
+    };
+  };
+  return effect;
 }
+// [/terrain]
+
+// [shadows]
+app::Effect terrain_shadows() {
+  app::Effect effect{.name = "terrain shadows", .chapter = 11, .knobs = {shadow_knob()}};
+  effect.wanted = [](const Scene& scene, const Settings&) -> app::Wanted {
+    if (!scene.terrain) return terrain_wanted(scene);
+    return {scene.terrain->shadows, fmt::format("terrain.shadows = {}", scene.terrain->shadows)};
+  };
+  effect.declare = [](app::Builder& builder, app::Board& board) {
+    const app::Context& context = builder.context;
+    const TerrainMaps maps = board.get<TerrainMaps>("terrain");
+    const uint32_t side = static_cast<uint32_t>(context.settings.integer("terrain.shadow_size"));
+    const graph::Resource image =
+        builder.graph.add_image("terrain shadows", {.size = {side, side}, .format = VK_FORMAT_R32G32_SFLOAT});
+    board.offer(TerrainShadows{image});
+    const auto shadowed_from = std::make_shared<glm::dvec3>(0.0);
+    const double radius_km = context.scene.planet.ground_radius_km;
+    graph::Pass pass{.name = "terrain shadows"};
+    pass.changed = [shadowed_from, radius_km](const app::Frame& frame) {
+      return glm::length(global_sun(frame, radius_km) - *shadowed_from) > 1e-6;
+    };
+    pass.steps.push_back({.shader = "11_aerial_perspective/shadow.comp",
+                          .constants = {{"STEPS", kShadowSteps}},
+                          .bindings = {{"height_map", maps.heights}, {"shadows", image}},
+                          .record = [context, maps, shadowed_from, radius_km, side](const graph::Recorder& r) {
+                            *shadowed_from = global_sun(r.frame, radius_km);
+                            const TerrainMap& map = *maps.map;
+                            const int size = static_cast<int>(side);
+                            r.push(ShadowPush{{*shadowed_from, glm::radians(context.scene.sun.angular_radius_deg)},
+                                              {map.extent_km, radius_km, map.extent_km / map.size, kShadowGrowth},
+                                              {size, size, 0, 0}});
+                            r.dispatch_over({side, side});
+                          }});
+    builder.graph.add(std::move(pass));
+  };
+  return effect;
+}
+// [/shadows]
 
 }  // namespace welkin

@@ -10,11 +10,8 @@
 #include <vector>
 
 #include "common/app/camera.hpp"
-#include "common/gpu/commands.hpp"
-#include "common/gpu/pipeline.hpp"
-#include "common/gpu/timer.hpp"
-#include "common/knobs.hpp"
-#include "common/scene/scene.hpp"
+#include "common/app/program.hpp"
+#include "common/graph/composition.hpp"
 
 namespace welkin::app {
 
@@ -25,66 +22,6 @@ enum class Display { raw, exposed };
 struct StandardView {
   std::string scene;
   std::string view;
-};
-
-// What a program may use for as long as it lives. Scene and settings change under it between frames.
-struct Context {
-  const gpu::Device& device;
-  const Scene& scene;
-  const Settings& settings;
-  const std::string& inject;  // --inject FAULT
-};
-
-// What a program gets for one frame.
-struct Frame {
-  VkCommandBuffer commands;
-  const gpu::Image& target;  // rgba32f storage image; draw() writes all of it and leaves it in layout GENERAL
-  const CameraRays& camera;
-  gpu::Timer& timer;
-  uint32_t index;
-  uint32_t seed;
-  double seconds;               // since the frame before; 0 for the first
-  glm::dvec3 position_km{0.0};  // of the camera, in the global frame of camera.hpp
-};
-
-// A ray of --probe, in degrees as in the file; relative azimuth 0 looks towards the sun.
-struct ProbeRay {
-  double altitude_km, view_zenith_deg, sun_zenith_deg, relative_azimuth_deg;
-};
-struct ProbeResult {
-  glm::dvec3 radiance, transmittance;
-  glm::dvec3 standard_error{0.0};  // of the radiance, where the chapter is stochastic
-};
-
-// A running chapter.
-struct Program {
-  virtual ~Program() = default;
-  // The image draw() writes: called before the first draw and after every resize, when no frame is in flight.
-  virtual void set_target(const gpu::Image& target) = 0;
-  // Records the passes of one frame, each timed, with their barriers.
-  virtual void draw(const Frame& frame) = 0;
-  // Makes the pipelines anew: a knob marked `rebuilds` changed, or a shader was recompiled. No frame is in flight.
-  virtual void rebuild() = 0;
-  // Radiance and transmittance along rays, in the order given. Chapters without a sky have none.
-  virtual std::vector<ProbeResult> probe(std::span<const ProbeRay> rays);
-  // What --explain prints beside passes and bytes: whole lines, or nothing.
-  virtual std::string explain() const { return {}; }
-  // An intermediate image for --dump: rgba32f or rgba16f, 2-D, left in layout GENERAL. nullptr: there is none of this
-  // name.
-  virtual const gpu::Image* image(const std::string& name) const;
-};
-
-// Turns the linear picture into 8 bits. The framework's own shows values raw or exposed, until chapter 06 teaches
-// better.
-struct DisplaySystem {
-  virtual ~DisplaySystem() = default;
-  // Before the first draw and after every resize, when no frame is in flight. Both are storage images in layout
-  // GENERAL.
-  virtual void set_images(const gpu::Image& picture, const gpu::Image& displayed) = 0;
-  // Records its timed passes. The picture may be read, and `displayed` written, by compute without a barrier.
-  virtual void draw(const Frame& frame) = 0;
-  virtual void rebuild() = 0;                         // as Program::rebuild
-  virtual std::string explain() const { return {}; }  // as Program::explain
 };
 
 // An unbiased method of a lower chapter that a method is measured against, with knobs of its own.
@@ -119,12 +56,16 @@ struct Chapter {
   std::optional<Truth> truth;                                  // what a window measures its view against
   std::string default_scene = "noon";
   std::vector<StandardView> standard_views;
-  std::function<std::unique_ptr<WindowSystem>()> window;  // none: the chapter draws into files only
-  std::function<std::unique_ptr<Program>(const Context&)> make;
-  std::function<std::unique_ptr<DisplaySystem>(const Context&)> make_display;  // none: as `display` says
+  std::function<std::unique_ptr<WindowSystem>()> window;         // none: the chapter draws into files only
+  std::vector<Effect> effects;                                   // of a frame, in order; their knobs are the chapter's
+  ProbeFunction probe;                                           // radiance along rays, beside effects
+  std::function<std::unique_ptr<Program>(const Context&)> make;  // instead of effects: a program of its own
 };
 
+// The chapter's program: a composition of its effects, or its own.
+std::unique_ptr<Program> make_program(const Chapter& chapter, const Context& context);
+
 // main() of every chapter: command line, device, and whichever of picture, window or instrument was asked for.
-int run(int argc, char** argv, const Chapter& chapter);
+int run(int argc, char** argv, Chapter chapter);
 
 }  // namespace welkin::app

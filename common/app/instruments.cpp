@@ -123,7 +123,6 @@ Image draw_reference(OtherScene& other, Program& program, VkExtent2D size) {
   const Session& session = other.session;
   const CameraPose pose = session.first_pose();
   for (const auto& [name, text] : session.chapter.reference) other.settings.set(name, text);
-  program.rebuild();
   Renderer renderer(session.context, session.chapter, program, size);
   renderer.draw(pose, session.options.time_s, session.options.seed, 0);
   return renderer.picture();
@@ -208,11 +207,8 @@ Exit run_sweep(const Session& session) {
     const Image reference = draw_reference(other, *program, size);
     program->set_target(renderer.target());
 
-    std::vector<double> compiled;
     for (const std::vector<double>& values : ladder) {
       other.settings = measure::with_values(base, values);
-      if (pipeline_values(values, base) != compiled || compiled.empty()) renderer.rebuild();
-      compiled = pipeline_values(values, base);
       const Timings timings = time_frames(other.session, renderer, pose, 1, device.software ? 3 : kRepeats);
       measure::SweepRow row{.view = standard.scene + "/" + standard.view,
                             .gpu_ms = timings.gpu,

@@ -44,12 +44,12 @@ void explain(const Session& session, const Program& program, Renderer& renderer,
   if (!session.chapter.sky)
     fmt::print("  none: this chapter draws no air\n");
   else
-    for (const Effect& effect : effects(session.scene))
+    for (const Constituent& effect : constituents(session.scene))
       fmt::print("  {:<14} {:<4} {}\n", effect.name, effect.on ? "on" : "off", effect.why);
   fmt::print("passes:\n");
   for (const gpu::PassTime& pass : renderer.pass_times())
     fmt::print("  {:<20} {:>10.3f} ms\n", pass.name, pass.milliseconds);
-  fmt::print("{}{}", program.explain(), renderer.explain_display());
+  fmt::print("{}", program.explain());
   fmt::print("memory:\n");
   for (const gpu::Allocation& allocation : session.device.allocations())
     fmt::print("  {:<20} {:>12} bytes\n", allocation.name, allocation.bytes);

@@ -32,28 +32,34 @@ void read_back(const gpu::Device& device, VkCommandPool pool, const gpu::Image& 
   std::memcpy(out.data(), buffer.mapped, out.size() * sizeof(T));
 }
 
-class PlainDisplay : public DisplaySystem {
- public:
-  PlainDisplay(const Context& context, Display mode) : context_(context), mode_(mode) { rebuild(); }
+}  // namespace
 
-  void set_images(const gpu::Image& picture, const gpu::Image& displayed) override {
-    gpu::write_storage_image(context_.device, set_, 0, picture);
-    gpu::write_storage_image(context_.device, set_, 1, displayed);
+std::vector<ProbeResult> Program::probe(std::span<const ProbeRay>) {
+  fail("--probe: this chapter has no sky to ask; chapters from 04 on do");
+}
+
+const gpu::Image* Program::image(const std::string&) const { return nullptr; }
+
+class Drawing::PlainDisplay {
+ public:
+  PlainDisplay(const Context& context, Display mode)
+      : context_(context),
+        mode_(mode),
+        pipeline_(gpu::create_compute_pipeline(context.device, "app/display.comp", {{0}, {1}}, sizeof(DisplayPush))),
+        set_(gpu::create_descriptor_set(context.device, pipeline_.set_layout, pipeline_.bindings)) {}
+
+  void set_images(const Targets& targets) {
+    gpu::write_storage_image(context_.device, set_, 0, targets.picture);
+    gpu::write_storage_image(context_.device, set_, 1, targets.displayed);
   }
 
-  void draw(const Frame& frame) override {
+  void draw(const Frame& frame) {
     const VkExtent2D size = frame.target.size;
     const DisplayPush push{{static_cast<int32_t>(size.width), static_cast<int32_t>(size.height)},
                            static_cast<float>(kBaseExposure * std::exp2(context_.scene.post.exposure_ev)),
                            mode_ == Display::exposed ? 1 : 0};
     const gpu::TimedPass pass(frame.timer, frame.commands, "display");
     gpu::dispatch_over(frame.commands, pipeline_, set_, push, size);
-  }
-
-  void rebuild() override {
-    pipeline_ = gpu::create_compute_pipeline(context_.device, "app/display.comp", {{0}, {1}}, sizeof(DisplayPush));
-    if (set_.handle == VK_NULL_HANDLE)
-      set_ = gpu::create_descriptor_set(context_.device, pipeline_.set_layout, pipeline_.bindings);
   }
 
  private:
@@ -63,18 +69,51 @@ class PlainDisplay : public DisplaySystem {
   gpu::DescriptorSet set_;
 };
 
-}  // namespace
+Drawing::Drawing(const Context& context, const Chapter& chapter, Program& program)
+    : context_(context), program_(program), mode_(chapter.display), compiled_(context.settings.values()) {}
+Drawing::~Drawing() = default;
 
-std::vector<ProbeResult> Program::probe(std::span<const ProbeRay>) {
-  fail("--probe: this chapter has no sky to ask; chapters from 04 on do");
+void Drawing::set_targets(const Targets& targets) {
+  targets_ = &targets;
+  if (program_.set_displayed(targets.displayed))
+    display_.reset();
+  else if (!display_)
+    display_ = std::make_unique<PlainDisplay>(context_, mode_);
+  if (display_) display_->set_images(targets);
+  program_.set_target(targets.picture);
 }
 
-const gpu::Image* Program::image(const std::string&) const { return nullptr; }
-
-std::unique_ptr<DisplaySystem> make_display_system(const Context& context, const Chapter& chapter) {
-  if (chapter.make_display) return chapter.make_display(context);
-  return std::make_unique<PlainDisplay>(context, chapter.display);
+bool Drawing::stale() {
+  const std::vector<Knob>& knobs = context_.settings.knobs();
+  for (size_t i = 0; i < knobs.size(); ++i)
+    if (knobs[i].rebuilds && compiled_[i] != context_.settings.values()[i]) return true;
+  return program_.stale();
 }
+
+void Drawing::follow() {
+  compiled_ = context_.settings.values();
+  program_.rebuild();
+}
+
+void Drawing::reload() {
+  if (display_) display_ = std::make_unique<PlainDisplay>(context_, mode_), display_->set_images(*targets_);
+  program_.reload();
+}
+
+// [frame]
+void Drawing::record(const Frame& frame) {
+  frame.timer.begin_frame(frame.commands);
+  program_.draw(frame);
+  if (!display_) return;
+  // The display pass reads what the chapter wrote; leaving this out is the fault the synchronization test plants.
+  if (context_.inject != "missing-barrier")
+    gpu::image_barrier(frame.commands, targets_->picture.handle, gpu::kComputeWrite, gpu::kComputeRead);
+  // The old content of the displayed picture is not needed, but whoever read it last must have finished.
+  constexpr gpu::Use read_before{VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_COPY_BIT};
+  gpu::image_barrier(frame.commands, targets_->displayed.handle, read_before, gpu::kComputeWrite);
+  display_->draw(frame);
+}
+// [/frame]
 
 Targets create_targets(const gpu::Device& device, VkExtent2D size) {
   return {gpu::create_image(device, "picture", size, VK_FORMAT_R32G32B32A32_SFLOAT,
@@ -83,39 +122,22 @@ Targets create_targets(const gpu::Device& device, VkExtent2D size) {
                             VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT)};
 }
 
-// [frame]
-void record_frame(const Context& context, Program& program, DisplaySystem& display, const Targets& targets,
-                  const Frame& frame) {
-  frame.timer.begin_frame(frame.commands);
-  program.draw(frame);
-  // The display pass reads what the chapter wrote; leaving this out is the fault the synchronization test plants.
-  if (context.inject != "missing-barrier")
-    gpu::image_barrier(frame.commands, targets.picture.handle, gpu::kComputeWrite, gpu::kComputeRead);
-  // The old content of the displayed picture is not needed, but whoever read it last must have finished.
-  constexpr gpu::Use read_before{VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_COPY_BIT};
-  gpu::image_barrier(frame.commands, targets.displayed.handle, read_before, gpu::kComputeWrite);
-  display.draw(frame);
-}
-// [/frame]
-
 Renderer::Renderer(const Context& context, const Chapter& chapter, Program& program, VkExtent2D size)
     : context_(context),
-      program_(program),
       pool_(gpu::create_command_pool(context.device)),
       commands_(gpu::allocate_commands(context.device, pool_)),
       timer_(context.device),
-      display_(make_display_system(context, chapter)),
+      drawing_(context, chapter, program),
       targets_(create_targets(context.device, size)) {
-  display_->set_images(targets_.picture, targets_.displayed);
-  program_.set_target(targets_.picture);
+  drawing_.set_targets(targets_);
 }
 
 void Renderer::draw(const CameraPose& pose, double time_s, uint32_t seed, uint32_t index) {
+  if (drawing_.stale()) drawing_.follow();
   const CameraRays camera = camera_rays(pose, context_.scene, time_s, {size().width, size().height}, seed, index);
   gpu::begin_commands(commands_);
   const double seconds = index == 0 ? 0.0 : kHeadlessFrameSeconds;
-  record_frame(context_, program_, *display_, targets_,
-               {commands_, targets_.picture, camera, timer_, index, seed, seconds, pose.position_km});
+  drawing_.record({commands_, targets_.picture, camera, timer_, index, seed, seconds, pose.position_km});
   gpu::end_commands(commands_);
   gpu::submit_and_wait(context_.device, commands_);
 }

@@ -9,9 +9,6 @@
 
 namespace welkin::app {
 
-// The chapter's way to 8 bits, or the framework's. See shaders/app/display.comp.
-std::unique_ptr<DisplaySystem> make_display_system(const Context& context, const Chapter& chapter);
-
 // Exposure factor at 0 stops: a clear noon sky of about 0.03 per unit solar irradiance comes out at middle grey and
 // above.
 inline constexpr double kBaseExposure = 24.0;
@@ -23,16 +20,38 @@ struct Targets {
 };
 Targets create_targets(const gpu::Device& device, VkExtent2D size);
 
-// Records a whole frame: the chapter's passes into targets.picture, then the display pass into targets.displayed. Both
-// end in layout GENERAL, last written or read by compute.
-void record_frame(const Context& context, Program& program, DisplaySystem& display, const Targets& targets,
-                  const Frame& frame);
+// A program and what turns its picture into 8 bits: its own display, or the framework's (shaders/app/display.comp),
+// which shows values raw or exposed until chapter 06 teaches better. For a window and for files the same.
+class Drawing {
+ public:
+  Drawing(const Context& context, const Chapter& chapter, Program& program);
+  ~Drawing();
+  // Before the first frame and after every resize, when no frame is in flight. They keep their address.
+  void set_targets(const Targets& targets);
+  // Whether scene or settings want something built anew; follow() does, when no frame is in flight.
+  bool stale();
+  void follow();
+  void reload();  // shaders were compiled anew
+  // Records a whole frame: the chapter's passes into targets.picture, then the display into targets.displayed. Both end
+  // in layout GENERAL.
+  void record(const Frame& frame);
+
+ private:
+  class PlainDisplay;
+
+  Context context_;
+  Program& program_;
+  Display mode_;
+  std::unique_ptr<PlainDisplay> display_;  // none: the program has its own
+  const Targets* targets_ = nullptr;
+  std::vector<double> compiled_;  // values of the knobs it was built for
+};
 
 class Renderer {
  public:
   Renderer(const Context& context, const Chapter& chapter, Program& program, VkExtent2D size);
 
-  // Draws one frame and waits for it.
+  // Draws one frame and waits for it. Scene and settings are followed.
   void draw(const CameraPose& pose, double time_s, uint32_t seed, uint32_t index);
 
   std::vector<gpu::PassTime> pass_times() { return timer_.read(); }
@@ -40,19 +59,13 @@ class Renderer {
   Image8 displayed();
   VkExtent2D size() const { return targets_.picture.size; }
   const gpu::Image& target() const { return targets_.picture; }
-  std::string explain_display() const { return display_->explain(); }
-  void rebuild() {
-    program_.rebuild();
-    display_->rebuild();
-  }
 
  private:
   Context context_;
-  Program& program_;
   gpu::CommandPool pool_;
   VkCommandBuffer commands_;
   gpu::Timer timer_;
-  std::unique_ptr<DisplaySystem> display_;
+  Drawing drawing_;
   Targets targets_;
 };
 

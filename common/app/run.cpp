@@ -118,7 +118,13 @@ void write_output(const Session& session, const std::string& file, const CameraP
                     {{"welkin.scene", restoring_text(session, pose)}, {"welkin.chapter", session.chapter.name}});
 }
 
-int run(int argc, char** argv, const Chapter& chapter) {
+std::unique_ptr<Program> make_program(const Chapter& chapter, const Context& context) {
+  if (chapter.make) return chapter.make(context);
+  return std::make_unique<Composition>(context, chapter.effects, chapter.probe);
+}
+
+int run(int argc, char** argv, Chapter chapter) {
+  if (!chapter.effects.empty()) chapter.knobs = knobs_of(chapter.effects, chapter.number);
   bool require_gpu = false;
   try {
     Options options;

@@ -18,7 +18,7 @@ struct Session {
   gpu::Device& device;
   Context context;
 
-  std::unique_ptr<Program> make_program() const { return chapter.make(context); }
+  std::unique_ptr<Program> make_program() const { return app::make_program(chapter, context); }
   CameraPose first_pose() const { return pose_of(scene.view(options.view)); }
 };
 

@@ -165,6 +165,12 @@ uint32_t Device::memory_type(uint32_t type_bits, VkMemoryPropertyFlags propertie
   fail("{} offers no memory type with properties {:#x}", candidate_.name, properties);
 }
 
+bool Device::has_memory_type(uint32_t type_bits, VkMemoryPropertyFlags properties) const {
+  for (uint32_t i = 0; i < memory_.memoryTypeCount; ++i)
+    if ((type_bits & (1u << i)) != 0 && (memory_.memoryTypes[i].propertyFlags & properties) == properties) return true;
+  return false;
+}
+
 void Device::set_name(VkObjectType type, uint64_t handle, const std::string& name) const {
   if (set_name_ == nullptr) return;
   const VkDebugUtilsObjectNameInfoEXT info{.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT,

@@ -48,6 +48,7 @@ class Device {
 
   // Index of a memory type among `type_bits` with all `properties`; throws if there is none.
   uint32_t memory_type(uint32_t type_bits, VkMemoryPropertyFlags properties) const;
+  bool has_memory_type(uint32_t type_bits, VkMemoryPropertyFlags properties) const;
 
   // Gives a handle the name that validation messages and debuggers show. Does nothing without validation.
   void set_name(VkObjectType type, uint64_t handle, const std::string& name) const;

@@ -34,6 +34,11 @@ PipelineLayout create_pipeline_layout(const Device& device, VkDescriptorSetLayou
                                       uint32_t push_constant_bytes);
 ShaderModule create_shader_module(const Device& device, const std::string& shader);
 
+// A pipeline of triangles drawn over a viewport and scissor set at recording; formats UNDEFINED: no such attachment.
+// Depth is reversed: what is nearer has the larger depth. Back faces count.
+PipelineHandle create_raster_pipeline(const Device& device, const std::vector<VkPipelineShaderStageCreateInfo>& stages,
+                                      VkPipelineLayout layout, VkFormat colour, VkFormat depth);
+
 // One descriptor set with a pool of its own: allocated once, written once, never in a frame.
 struct DescriptorSet {
   DescriptorPool pool;
@@ -45,8 +50,10 @@ void write_storage_image(const Device& device, const DescriptorSet& set, uint32_
 // For VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER; the image is read in layout GENERAL.
 void write_sampled_image(const Device& device, const DescriptorSet& set, uint32_t slot, const Image& image,
                          VkSampler sampler);
+void write_image_view(const Device& device, const DescriptorSet& set, uint32_t slot, VkDescriptorType type,
+                      VkImageView view, VkSampler sampler);
 void write_buffer(const Device& device, const DescriptorSet& set, uint32_t slot, VkDescriptorType type,
-                  const Buffer& buffer);
+                  const Buffer& buffer, VkDeviceSize range = VK_WHOLE_SIZE);
 
 // Binds pipeline, set and push constants, then starts that many workgroups.
 template <typename Push>

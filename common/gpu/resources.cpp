@@ -35,20 +35,32 @@ AccountEntry::~AccountEntry() {
 }
 
 // [image]
+static ImageView create_view(const Device& device, const Image& image, VkImageViewType type, uint32_t first_mip,
+                             uint32_t mips) {
+  const VkImageViewCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+                                   .image = image.handle,
+                                   .viewType = type,
+                                   .format = image.format,
+                                   .subresourceRange = {aspect_of(image.format), first_mip, mips, 0, image.layers}};
+  VkImageView view = VK_NULL_HANDLE;
+  check(vkCreateImageView(device, &info, nullptr, &view), "vkCreateImageView");
+  return ImageView(device, view);
+}
+
 Image create_image(const Device& device, const std::string& name, VkExtent2D size, VkFormat format,
-                   VkImageUsageFlags usage, uint32_t depth) {
+                   VkImageUsageFlags usage, uint32_t depth, uint32_t mips, uint32_t layers) {
   const uint32_t limit = depth > 0 ? device.limits().maxImageDimension3D : device.limits().maxImageDimension2D;
   if (size.width == 0 || size.height == 0 || size.width > limit || size.height > limit || depth > limit)
     fail("{}: {}x{}x{} texels; each side must be 1 to {} on {}", name, size.width, size.height, std::max(depth, 1u),
          limit, device.candidate().name);
-  Image image{.size = size, .depth = std::max(depth, 1u), .format = format};
+  Image image{.size = size, .depth = std::max(depth, 1u), .mips = mips, .layers = layers, .format = format};
 
   const VkImageCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
                                .imageType = depth > 0 ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D,
                                .format = format,
                                .extent = {size.width, size.height, image.depth},
-                               .mipLevels = 1,
-                               .arrayLayers = 1,
+                               .mipLevels = mips,
+                               .arrayLayers = layers,
                                .samples = VK_SAMPLE_COUNT_1_BIT,
                                .tiling = VK_IMAGE_TILING_OPTIMAL,
                                .usage = usage,
@@ -62,14 +74,12 @@ Image create_image(const Device& device, const std::string& name, VkExtent2D siz
   image.memory = allocate(device, needs, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, name);
   check(vkBindImageMemory(device, handle, image.memory, 0), "vkBindImageMemory");
 
-  const VkImageViewCreateInfo view_info{.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
-                                        .image = handle,
-                                        .viewType = depth > 0 ? VK_IMAGE_VIEW_TYPE_3D : VK_IMAGE_VIEW_TYPE_2D,
-                                        .format = format,
-                                        .subresourceRange = {aspect_of(format), 0, 1, 0, 1}};
-  VkImageView view = VK_NULL_HANDLE;
-  check(vkCreateImageView(device, &view_info, nullptr, &view), "vkCreateImageView");
-  image.view = ImageView(device, view);
+  const VkImageViewType type = depth > 0    ? VK_IMAGE_VIEW_TYPE_3D
+                               : layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY
+                                            : VK_IMAGE_VIEW_TYPE_2D;
+  image.view = create_view(device, image, type, 0, mips);
+  for (uint32_t mip = 0; mips > 1 && mip < mips; ++mip)
+    image.mip_views.push_back(create_view(device, image, type, mip, 1));
   image.account = AccountEntry(device, name, needs.size);
   device.set_name(VK_OBJECT_TYPE_IMAGE, reinterpret_cast<uint64_t>(handle), name);
   return image;
@@ -81,16 +91,17 @@ VkImageAspectFlags aspect_of(VkFormat format) {
                                                                          : VK_IMAGE_ASPECT_COLOR_BIT;
 }
 
-Sampler create_sampler(const Device& device, Border u, Border v) {
+Sampler create_sampler(const Device& device, Border u, Border v, VkFilter filter) {
   const auto mode = [](Border border) {
     return border == Border::clamp ? VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE : VK_SAMPLER_ADDRESS_MODE_REPEAT;
   };
   const VkSamplerCreateInfo info{.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
-                                 .magFilter = VK_FILTER_LINEAR,
-                                 .minFilter = VK_FILTER_LINEAR,
+                                 .magFilter = filter,
+                                 .minFilter = filter,
                                  .addressModeU = mode(u),
                                  .addressModeV = mode(v),
-                                 .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE};
+                                 .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                 .maxLod = VK_LOD_CLAMP_NONE};
   VkSampler sampler = VK_NULL_HANDLE;
   check(vkCreateSampler(device, &info, nullptr, &sampler), "vkCreateSampler");
   return {device, sampler};
@@ -111,15 +122,12 @@ Buffer create_buffer(const Device& device, const std::string& name, VkDeviceSize
   vkGetBufferMemoryRequirements(device, handle, &needs);
   VkMemoryPropertyFlags properties = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
   if (where != Where::device) properties = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-  if (where == Where::readback) {
-    // Reading write-combined memory is very slow: take cached memory where the device has it.
-    VkPhysicalDeviceMemoryProperties memory;
-    vkGetPhysicalDeviceMemoryProperties(device.physical(), &memory);
-    const VkMemoryPropertyFlags cached = properties | VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
-    for (uint32_t i = 0; i < memory.memoryTypeCount; ++i)
-      if ((needs.memoryTypeBits & (1u << i)) != 0 && (memory.memoryTypes[i].propertyFlags & cached) == cached)
-        properties = cached;
-  }
+  // Reading write-combined memory is very slow: cached memory where the device has it. What is written every frame lies
+  // best in the device's own.
+  VkMemoryPropertyFlags better = 0;
+  if (where == Where::readback) better = VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
+  if (where == Where::stream) better = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
+  if (better != 0 && device.has_memory_type(needs.memoryTypeBits, properties | better)) properties |= better;
   buffer.memory = allocate(device, needs, properties, name);
   check(vkBindBufferMemory(device, handle, buffer.memory, 0), "vkBindBufferMemory");
   if (where != Where::device)

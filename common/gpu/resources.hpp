@@ -32,21 +32,24 @@ struct Image {
   ImageView view;
   VkExtent2D size{};
   uint32_t depth = 1;  // slices of a 3-D image
+  uint32_t mips = 1, layers = 1;
+  std::vector<ImageView> mip_views;  // one a mip, if there are several: a storage image is one mip
   VkFormat format = VK_FORMAT_UNDEFINED;
   AccountEntry account;
 };
 
-// An image in device memory, layout UNDEFINED: 2-D, or 3-D of `depth` slices if that is above 0. Throws if a side is 0
-// or beyond the device's limit. Depth formats get a depth view, all others a colour view.
+// An image in device memory, layout UNDEFINED: 2-D, or 3-D of `depth` slices if that is above 0, with mips and layers.
+// Throws if a side is 0 or beyond the device's limit. Depth formats get a depth view, all others a colour view.
 Image create_image(const Device& device, const std::string& name, VkExtent2D size, VkFormat format,
-                   VkImageUsageFlags usage, uint32_t depth = 0);
+                   VkImageUsageFlags usage, uint32_t depth = 0, uint32_t mips = 1, uint32_t layers = 1);
 
 // What of an image a view or a barrier is about.
 VkImageAspectFlags aspect_of(VkFormat format);
 
-// How a shader reads between texels: linear in both cases; at the borders the last texel, or around to the first.
+// How a shader reads between texels, and at the borders: the last texel, or around to the first.
 enum class Border { clamp, repeat };
-Sampler create_sampler(const Device& device, Border u = Border::clamp, Border v = Border::clamp);
+Sampler create_sampler(const Device& device, Border u = Border::clamp, Border v = Border::clamp,
+                       VkFilter filter = VK_FILTER_LINEAR);
 
 struct Buffer {
   Memory memory;
@@ -61,7 +64,13 @@ struct Buffer {
   }
 };
 
-enum class Where { device, upload, readback };  // device memory; host-written; host-read (cached where there is such)
+enum class Where {
+  device,
+  upload,
+  readback,
+  stream
+};  // device memory; host-written; host-read (cached where there is
+    // such); host-written every frame (device-local where there is)
 
 Buffer create_buffer(const Device& device, const std::string& name, VkDeviceSize bytes, VkBufferUsageFlags usage,
                      Where where);

@@ -13,10 +13,9 @@ struct PassTime {
   double milliseconds = 0.0;
 };
 
-// Up to kMaximumPasses named intervals per frame. begin_frame, passes, then read after the frame's work has finished.
+// Named intervals of a frame, as many as there are. begin_frame, passes, then read after the frame's work has finished.
 class Timer {
  public:
-  static constexpr uint32_t kMaximumPasses = 16;
   explicit Timer(const Device& device);
 
   void begin_frame(VkCommandBuffer commands);
@@ -27,11 +26,12 @@ class Timer {
   const std::vector<PassTime>& read();
 
  private:
-  void stamp(VkCommandBuffer commands, uint32_t query);
+  void stamp(VkCommandBuffer commands, size_t pass, uint32_t query);
+  void add_pool();
 
   const Device* device_;
-  QueryPool queries_;
-  std::vector<std::string> names_;  // kMaximumPasses of them, so that a frame assigns and does not allocate
+  std::vector<QueryPool> pools_;    // one a kPassesOfPool passes
+  std::vector<std::string> names_;  // as many as fit, so that a frame assigns and does not allocate
   size_t count_ = 0;                // of them in this frame
   std::vector<PassTime> times_;
 };

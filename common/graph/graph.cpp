@@ -1,4 +1,4 @@
-// Ordering, culling and barriers of the frame graph. See graph.hpp.
+// Ordering, culling, barriers and recording of the frame graph. See graph.hpp; what it makes is in graph_make.cpp.
 #include "common/graph/graph.hpp"
 
 #include <algorithm>
@@ -9,113 +9,122 @@ namespace {
 constexpr VkAccessFlags2 kWrites = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT |
                                    VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT |
                                    VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_HOST_WRITE_BIT;
-constexpr size_t kNobody = ~size_t{0};
+constexpr VkAccessFlags2 kReads = VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_SAMPLED_READ_BIT |
+                                  VK_ACCESS_2_UNIFORM_READ_BIT | VK_ACCESS_2_TRANSFER_READ_BIT |
+                                  VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT;
 
 bool writes(const gpu::Use& use) { return (use.access & kWrites) != 0; }
+// An attachment that is cleared is not read: its load operation says so, the access mask does not.
+bool only_reads(const gpu::Use& use) { return !writes(use) && (use.access & kReads) != 0; }
 
 }  // namespace
 
-Resource Graph::hold(Held held) {
-  resources_.push_back(std::move(held));
-  return static_cast<Resource>(resources_.size() - 1);
+void Recorder::push_bytes(const void* values, uint32_t bytes) const {
+  if (bytes != pipeline->push_constant_bytes)
+    fail("shader {}: its push constants are {} bytes, and {} were given", pipeline->shader,
+         pipeline->push_constant_bytes, bytes);
+  vkCmdPushConstants(frame.commands, pipeline->layout, pipeline->stages, 0, bytes, values);
 }
 
-Resource Graph::add(std::string name, const gpu::Image& image, gpu::Use outside) {
-  return hold({.name = std::move(name), .image = &image, .outside = outside});
-}
-Resource Graph::add(std::string name, const gpu::Buffer& buffer) {
-  return hold({.name = std::move(name), .buffer = &buffer});
+void Recorder::dispatch(uint32_t groups_x, uint32_t groups_y, uint32_t groups_z) const {
+  vkCmdDispatch(frame.commands, groups_x, groups_y, groups_z);
 }
 
-void Graph::replace(Resource resource, const gpu::Image& image) {
-  resources_[resource].image = &image;
-  resources_[resource].state = {};
-  resources_[resource].outdated = true;
+void Recorder::dispatch_over(VkExtent2D size) const { dispatch((size.width + 7) / 8, (size.height + 7) / 8); }
+
+void Graph::add(Pass pass) {
+  passes_.push_back(std::make_unique<Counted>());
+  passes_.back()->pass = std::move(pass);
+  passes_.back()->owner = owner_;
 }
 
-void Graph::add(Pass pass) { passes_.push_back({std::move(pass)}); }
-void Graph::want(Resource resource) { resources_[resource].wanted = true; }
+void Graph::set_output(Resource resource, bool output) { held_of(resource).output = output; }
 
-// A buffer has no layout, whatever the use says.
-gpu::Use Graph::use_of(const Access& access) const {
-  gpu::Use use = access.use;
-  if (resources_[access.resource].buffer != nullptr) use.layout = VK_IMAGE_LAYOUT_UNDEFINED;
-  return use;
+void Graph::remove(uint32_t owner) {
+  std::erase_if(passes_, [&](const auto& counted) { return counted->owner == owner; });
+  std::erase_if(held_, [&](const auto& entry) { return entry.second.owner == owner; });
+  order_.clear();  // until compile()
 }
 
-size_t Graph::writer_of(Resource resource) const {
-  for (size_t i = 0; i < passes_.size(); ++i)
-    for (const Access& access : passes_[i].pass.accesses)
-      if (access.resource == resource && writes(access.use)) return i;
-  return kNobody;
+Graph::Counted* Graph::writer_of(const Held& held) {
+  for (const auto& counted : passes_)
+    for (const Made& step : counted->steps)
+      for (const Touch& touch : step.touches)
+        if (touch.held == &held && writes(touch.use)) return counted.get();
+  return nullptr;
 }
 
-// [compile]
-void Graph::compile() {
-  for (const Counted& counted : passes_)
-    for (const Access& access : counted.pass.accesses) {
-      const std::string& name = resources_[access.resource].name;
-      const auto same = [&](const Access& other) { return other.resource == access.resource; };
-      if (std::count_if(counted.pass.accesses.begin(), counted.pass.accesses.end(), same) > 1)
-        fail("frame graph: pass '{}' names '{}' twice; what it changes must be another resource than what it reads",
-             counted.pass.name, name);
-      const size_t writer = writer_of(access.resource);
-      if (writer == kNobody) fail("frame graph: pass '{}' reads '{}', which no pass writes", counted.pass.name, name);
-      if (writes(access.use) && &passes_[writer] != &counted)
-        fail("frame graph: '{}' is written by '{}' and by '{}'; one pass writes a resource", name,
-             passes_[writer].pass.name, counted.pass.name);
+// [check]
+void Graph::check_accesses(const Counted& counted) {
+  std::vector<const Held*> written;
+  for (const Made& step : counted.steps)
+    for (const Touch& touch : step.touches) {
+      const std::string& name = touch.held->name;
+      const auto clashes = [&](const Touch& other) {
+        return &other != &touch && other.held == touch.held && other.last_frame == touch.last_frame &&
+               (writes(other.use) || writes(touch.use)) && other.first_mip < touch.first_mip + touch.mips &&
+               touch.first_mip < other.first_mip + other.mips;
+      };
+      if (std::any_of(step.touches.begin(), step.touches.end(), clashes))
+        fail(
+            "frame graph: pass '{}' names '{}' twice in a step; what it changes must be another resource than what it "
+            "reads",
+            counted.pass.name, name);
+      const Counted* writer = writer_of(*touch.held);
+      if (writer == nullptr && touch.held->kind != Kind::filled)
+        fail("frame graph: pass '{}' reads '{}', which no pass writes", counted.pass.name, name);
+      if (writes(touch.use) && writer != &counted)
+        fail("frame graph: '{}' is written by '{}' and by '{}'; one pass writes a resource", name, writer->pass.name,
+             counted.pass.name);
+      if (writes(touch.use)) written.push_back(touch.held);
+      if (only_reads(touch.use) && writer == &counted && !touch.last_frame &&
+          std::count(written.begin(), written.end(), touch.held) == 0)
+        fail("frame graph: pass '{}' reads '{}' before it has written it", counted.pass.name, name);
     }
-  // From what is wanted back to what that needs: whoever is not reached is left out.
+}
+// [/check]
+
+// [cull]
+void Graph::cull() {
+  for (const auto& counted : passes_) check_accesses(*counted);
+  // From the outputs back to what they need: whoever is not reached is left out.
   order_.clear();
-  for (Counted& counted : passes_) counted.needed = false;
-  std::vector<int> mark(passes_.size(), 0);
-  for (Resource resource = 0; resource < resources_.size(); ++resource) {
-    if (!resources_[resource].wanted) continue;
-    if (writer_of(resource) == kNobody)
-      fail("frame graph: '{}' is wanted, and no pass writes it", resources_[resource].name);
-    visit(writer_of(resource), mark);
+  for (const auto& counted : passes_) counted->used = false;
+  std::map<const Counted*, int> mark;
+  for (auto& [resource, held] : held_) {
+    if (!held.output) continue;
+    Counted* writer = writer_of(held);
+    if (writer == nullptr) fail("frame graph: '{}' is an output, and no pass writes it", held.name);
+    visit(*writer, mark);
   }
-  image_barriers_.reserve(resources_.size());
-  buffer_barriers_.reserve(resources_.size());
+  for (const auto& counted : passes_)
+    if (!counted->used) counted->fresh = true;  // it will have missed what happens until it is needed again
 }
 
 // Depth first: a pass follows the writers of all it reads. mark: 0 not seen, 1 being visited, 2 placed.
-void Graph::visit(size_t index, std::vector<int>& mark) {
-  if (mark[index] == 2) return;
-  if (mark[index] == 1) fail("frame graph: pass '{}' needs its own result", passes_[index].pass.name);
-  mark[index] = 1;
-  for (const Access& access : passes_[index].pass.accesses)
-    if (!writes(access.use)) visit(writer_of(access.resource), mark);
-  mark[index] = 2;
-  passes_[index].needed = true;
-  order_.push_back(index);
+void Graph::visit(Counted& counted, std::map<const Counted*, int>& mark) {
+  if (mark[&counted] == 2) return;
+  if (mark[&counted] == 1) fail("frame graph: pass '{}' needs its own result", counted.pass.name);
+  mark[&counted] = 1;
+  for (const Made& step : counted.steps)
+    for (const Touch& touch : step.touches) {
+      Counted* writer = touch.last_frame ? nullptr : writer_of(*touch.held);
+      if (writer != nullptr && writer != &counted) visit(*writer, mark);
+    }
+  mark[&counted] = 2;
+  counted.used = true;
+  order_.push_back(&counted);
 }
-// [/compile]
-
-std::vector<Barrier> Graph::barriers(int frame) const {
-  std::vector<Held> held = resources_;
-  for (Held& one : held) one.state = {};
-  std::vector<Barrier> derived;
-  for (int i = 0; i <= frame; ++i) {
-    derived.clear();
-    for (Held& one : held) touched_outside(one);
-    for (const size_t index : order_)
-      for (const Access& access : passes_[index].pass.accesses) {
-        gpu::Use before;
-        if (depend(held[access.resource].state, use_of(access), before))
-          derived.push_back({passes_[index].pass.name, held[access.resource].name, before, access.use});
-      }
-  }
-  return derived;
-}
+// [/cull]
 
 // [depend]
 bool Graph::depend(State& state, const gpu::Use& use, gpu::Use& before) {
   const bool new_layout = use.layout != state.layout;
   if (writes(use) || new_layout) {
-    // After the last write, and after everybody who has read it since. A read leaves nothing to make visible.
-    before = {state.written.stage | state.read_stages, state.read_stages == 0 ? state.written.access : VK_ACCESS_2_NONE,
-              state.layout};
+    // After the last write, and after everybody who has read it since. A pure write after reads has nothing to make
+    // visible.
+    const bool visible = state.read_stages != 0 && (use.access & kReads) == 0;
+    before = {state.written.stage | state.read_stages, visible ? VK_ACCESS_2_NONE : state.written.access, state.layout};
     // A layout is changed by the barrier itself, a write that later reads must see.
     const bool needed = before.stage != 0 || new_layout;
     if (writes(use))
@@ -139,37 +148,79 @@ bool Graph::depend(State& state, const gpu::Use& use, gpu::Use& before) {
 }
 // [/depend]
 
-void Graph::record_barriers(const app::Frame& frame, const Pass& pass) {
+// Whoever looks at the image between frames has read it; with layout UNDEFINED nobody wants its content any more.
+void Graph::touched_between_frames(Held& held) {
+  if (held.between_frames.stage == 0) return;
+  for (State& state : held.states[0]) {
+    state.read_stages |= held.between_frames.stage;
+    if (held.between_frames.layout == VK_IMAGE_LAYOUT_UNDEFINED) state.layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  }
+}
+
+std::vector<Barrier> Graph::barriers(int frame) const {
+  Graph copy;  // of what barriers depend on; states as before a first frame
+  std::map<const Held*, Held*> twin;
+  for (const auto& [resource, held] : held_) {
+    Held& mine = copy.held_[resource];
+    mine.name = held.name, mine.kind = held.kind, mine.between_frames = held.between_frames;
+    for (int i = 0; i < 2; ++i)
+      mine.states[i].assign(held.states[i].size(), held.kind == Kind::filled ? held.states[i].front() : State{});
+    twin[&held] = &mine;
+  }
+  std::vector<Barrier> derived;
+  for (int i = 0; i <= frame; ++i, ++copy.frames_) {
+    derived.clear();
+    for (auto& [resource, held] : copy.held_) copy.touched_between_frames(held);
+    for (const Counted* counted : order_)
+      for (const Made& step : counted->steps)
+        for (const Touch& touch : step.touches) {
+          std::vector<State>& states = copy.states_of(*twin[touch.held], touch.last_frame);
+          for (uint32_t mip = touch.first_mip; mip < touch.first_mip + touch.mips; ++mip) {
+            gpu::Use before;
+            if (depend(states[mip], touch.use, before))
+              derived.push_back({counted->pass.name, touch.held->name, before, touch.use});
+          }
+        }
+  }
+  return derived;
+}
+
+// [barriers]
+void Graph::record_barriers(const app::Frame& frame, const Made& made) {
   image_barriers_.clear();
   buffer_barriers_.clear();
-  for (const Access& access : pass.accesses) {
-    Held& held = resources_[access.resource];
-    if (writes(access.use)) held.written_now = true, held.outdated = false;
-    gpu::Use before;
-    if (!depend(held.state, use_of(access), before)) continue;
-    if (drops_barriers_ && !writes(access.use)) continue;
-    if (held.image != nullptr)
-      image_barriers_.push_back({.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
-                                 .srcStageMask = before.stage,
-                                 .srcAccessMask = before.access,
-                                 .dstStageMask = access.use.stage,
-                                 .dstAccessMask = access.use.access,
-                                 .oldLayout = before.layout,
-                                 .newLayout = access.use.layout,
-                                 .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                                 .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                                 .image = held.image->handle,
-                                 .subresourceRange = {gpu::aspect_of(held.image->format), 0, 1, 0, 1}});
-    else
-      buffer_barriers_.push_back({.sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER_2,
-                                  .srcStageMask = before.stage,
-                                  .srcAccessMask = before.access,
-                                  .dstStageMask = access.use.stage,
-                                  .dstAccessMask = access.use.access,
-                                  .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                                  .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                                  .buffer = held.buffer->handle,
-                                  .size = VK_WHOLE_SIZE});
+  for (const Touch& touch : made.touches) {
+    Held& held = *touch.held;
+    const bool drop = drops_barriers_ && !writes(touch.use);
+    std::vector<State>& states = states_of(held, touch.last_frame);
+    for (uint32_t mip = touch.first_mip; mip < touch.first_mip + touch.mips; ++mip) {
+      gpu::Use before;
+      if (!depend(states[mip], touch.use, before) || drop) continue;
+      if (held.is_buffer)
+        buffer_barriers_.push_back({.sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER_2,
+                                    .srcStageMask = before.stage,
+                                    .srcAccessMask = before.access,
+                                    .dstStageMask = touch.use.stage,
+                                    .dstAccessMask = touch.use.access,
+                                    .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                    .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                    .buffer = held.buffer != nullptr ? held.buffer->handle : held.own_buffer.handle,
+                                    .size = VK_WHOLE_SIZE});
+      else {
+        const gpu::Image& image = *image_of(held, &states == &held.states[1]);
+        image_barriers_.push_back({.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
+                                   .srcStageMask = before.stage,
+                                   .srcAccessMask = before.access,
+                                   .dstStageMask = touch.use.stage,
+                                   .dstAccessMask = touch.use.access,
+                                   .oldLayout = before.layout,
+                                   .newLayout = touch.use.layout,
+                                   .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                   .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                   .image = image.handle,
+                                   .subresourceRange = {gpu::aspect_of(image.format), mip, 1, 0, image.layers}});
+      }
+    }
   }
   if (image_barriers_.empty() && buffer_barriers_.empty()) return;
   const VkDependencyInfo info{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
@@ -179,104 +230,71 @@ void Graph::record_barriers(const app::Frame& frame, const Pass& pass) {
                               .pImageMemoryBarriers = image_barriers_.data()};
   vkCmdPipelineBarrier2(frame.commands, &info);
 }
-
-// Whoever looks at the image between frames has read it; with layout UNDEFINED nobody wants its content any more.
-void Graph::touched_outside(Held& held) {
-  if (held.outside.stage == 0) return;
-  held.state.read_stages |= held.outside.stage;
-  if (held.outside.layout == VK_IMAGE_LAYOUT_UNDEFINED) held.state.layout = VK_IMAGE_LAYOUT_UNDEFINED;
-}
+// [/barriers]
 
 bool Graph::must_run(const Counted& counted, const app::Frame& frame) const {
-  if (all_again_ || (counted.pass.changed && counted.pass.changed(frame))) return true;
-  return std::any_of(counted.pass.accesses.begin(), counted.pass.accesses.end(), [&](const Access& access) {
-    const Held& held = resources_[access.resource];
-    return writes(access.use) ? held.outdated : held.written_now;
-  });
+  if (counted.fresh || (counted.pass.changed && counted.pass.changed(frame))) return true;
+  for (const Made& step : counted.steps)
+    for (const Touch& touch : step.touches)
+      if (!touch.last_frame && (writes(touch.use) ? touch.held->outdated : touch.held->written_now)) return true;
+  return false;
 }
 
 // [execute]
-void Graph::execute(const app::Frame& frame) {
-  for (Held& held : resources_) {
+void Graph::execute(const app::Frame& frame, uint32_t view_offset) {
+  for (auto& [resource, held] : held_) {
     held.written_now = false;
-    touched_outside(held);
+    touched_between_frames(held);
   }
-  for (const size_t index : order_) {
-    Counted& counted = passes_[index];
-    if (!must_run(counted, frame)) continue;
-    if (counted.pass.idle && counted.pass.idle(frame)) {
-      for (const Access& access : counted.pass.accesses) resources_[access.resource].outdated |= writes(access.use);
-      continue;
-    }
-    record_barriers(frame, counted.pass);
-    const gpu::TimedPass timed(frame.timer, frame.commands, counted.pass.name);
-    counted.pass.record(frame);
-    ++counted.runs;
+  for (Counted* counted : order_) {
+    if (!must_run(*counted, frame)) continue;
+    if (counted->pass.needed && !counted->pass.needed(frame))
+      counted->fresh = true;  // until somebody needs it
+    else
+      record(frame, view_offset, *counted);
   }
-  all_again_ = false;
   ++frames_;
+  cut_ = false;
+}
+
+void Graph::record(const app::Frame& frame, uint32_t view_offset, Counted& counted) {
+  const bool timed = !counted.pass.times_itself;
+  if (timed) frame.timer.begin_pass(frame.commands, counted.pass.name);
+  for (size_t i = 0; i < counted.steps.size(); ++i) {
+    const Made& made = counted.steps[i];
+    const Step& step = counted.pass.steps[i];
+    const Recorder recorder{frame, *this, made.pipeline.get()};
+    if (step.when && !step.when(recorder)) continue;
+    record_barriers(frame, made);
+    if (made.pipeline != nullptr) {
+      const VkDescriptorSet set = made.sets[made.alternates ? parity() : 0].handle;
+      const bool views = std::any_of(made.pipeline->bindings.begin(), made.pipeline->bindings.end(),
+                                     [](const gpu::ShaderBinding& b) { return b.name == gpu::kViewBlock; });
+      vkCmdBindPipeline(frame.commands, made.pipeline->bind_point, made.pipeline->handle);
+      if (set != VK_NULL_HANDLE)
+        vkCmdBindDescriptorSets(frame.commands, made.pipeline->bind_point, made.pipeline->layout, 0, 1, &set,
+                                views ? 1 : 0, &view_offset);
+    }
+    step.record(recorder);
+    for (const Touch& touch : made.touches)
+      if (writes(touch.use))
+        touch.held->written_now = true, touch.held->outdated = false, touch.held->written_frame = frames_ + 1;
+  }
+  if (timed) frame.timer.end_pass(frame.commands);
+  counted.fresh = false;
+  ++counted.runs;
 }
 // [/execute]
 
-std::string Graph::explain() const {
-  std::string text = "frame graph:\n";
-  for (const size_t index : order_) {
-    const Counted& counted = passes_[index];
-    text += fmt::format("  {:<20} ran in {} of {} frames{}\n", counted.pass.name, counted.runs, frames_,
-                        counted.runs < frames_ ? "; in the others nothing it depends on had changed" : "");
-  }
-  for (const Counted& counted : passes_)
-    if (!counted.needed) text += fmt::format("  {:<20} left out: nobody needs what it writes\n", counted.pass.name);
-  for (const Barrier& barrier : barriers())
-    text += fmt::format("  before {}: {} from {} to {}\n", barrier.pass, barrier.resource, describe(barrier.before),
-                        describe(barrier.after));
-  return text;
+void Graph::redo() {
+  for (const auto& counted : passes_) counted->fresh = true;
 }
 
-std::vector<std::string> Graph::order() const {
-  std::vector<std::string> names;
-  for (const size_t index : order_) names.push_back(passes_[index].pass.name);
-  return names;
+bool Graph::valid(Resource history) const {
+  const Held& held = held_.at(history);
+  return !cut_ && !held.outdated && held.written_frame != 0 && held.written_frame == frames_;
 }
 
-uint64_t Graph::runs(const std::string& pass) const {
-  for (const Counted& counted : passes_)
-    if (counted.pass.name == pass) return counted.runs;
-  fail("frame graph: no pass '{}'", pass);
-}
-
-std::string describe(const gpu::Use& use) {
-  std::string text;
-  const auto bits = [&](auto value, std::initializer_list<std::pair<uint64_t, const char*>> names) {
-    for (const auto& [bit, name] : names)
-      if ((value & bit) != 0) text += (text.empty() ? "" : ", ") + std::string(name);
-  };
-  bits(use.stage, {{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, "compute shader"},
-                   {VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT, "vertex shader"},
-                   {VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, "fragment shader"},
-                   {VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT, "early depth test"},
-                   {VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT, "late depth test"},
-                   {VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, "attachment output"},
-                   {VK_PIPELINE_STAGE_2_COPY_BIT, "copy"},
-                   {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, "transfer"}});
-  if (text.empty()) text = "nothing";
-  bits(use.access, {{VK_ACCESS_2_SHADER_STORAGE_READ_BIT, "storage read"},
-                    {VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, "storage write"},
-                    {VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, "sampled read"},
-                    {VK_ACCESS_2_UNIFORM_READ_BIT, "uniform read"},
-                    {VK_ACCESS_2_TRANSFER_WRITE_BIT, "write"},
-                    {VK_ACCESS_2_TRANSFER_READ_BIT, "read"},
-                    {VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, "colour write"},
-                    {VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT, "depth write"},
-                    {VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT, "depth read"}});
-  switch (use.layout) {
-    case VK_IMAGE_LAYOUT_UNDEFINED: break;  // a buffer, or content that is not needed
-    case VK_IMAGE_LAYOUT_GENERAL: text += ", GENERAL"; break;
-    case VK_IMAGE_LAYOUT_ATTACHMENT_OPTIMAL: text += ", ATTACHMENT_OPTIMAL"; break;
-    case VK_IMAGE_LAYOUT_READ_ONLY_OPTIMAL: text += ", READ_ONLY_OPTIMAL"; break;
-    default: text += fmt::format(", layout {}", static_cast<int>(use.layout));
-  }
-  return text;
-}
+void Graph::cut() { cut_ = true; }
 
 }  // namespace welkin::graph

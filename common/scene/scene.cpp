@@ -178,8 +178,8 @@ std::string write_scene(const Scene& scene) {
   return out;
 }
 
-std::vector<Effect> effects(const Scene& scene) {
-  std::vector<Effect> list;
+std::vector<Constituent> constituents(const Scene& scene) {
+  std::vector<Constituent> list;
   for (const char* kind : {"rayleigh", "mie", "ozone"}) {
     const Medium* medium = scene.medium(kind);
     if (!medium)

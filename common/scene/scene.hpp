@@ -31,12 +31,14 @@ struct Medium {
   double draine_alpha = 0.5;  // Draine's alpha (0: Henyey-Greenstein, 1: Cornette-Shanks)
   double second_g = -0.3;     // double HG: asymmetry and weight of the second lobe
   double second_weight = 0.1;
+  bool operator==(const Medium&) const = default;
 };
 
 struct Planet {
   double ground_radius_km = 6360.0;
   double top_radius_km = 6460.0;
   glm::dvec3 ground_albedo{0.3};
+  bool operator==(const Planet&) const = default;
 };
 
 struct Sun {
@@ -49,6 +51,7 @@ struct Sun {
   double angular_radius_deg = 0.2667;
   glm::dvec3 irradiance{1.0};
   bool disc = true;
+  bool operator==(const Sun&) const = default;
 };
 
 struct View {
@@ -57,6 +60,7 @@ struct View {
   double azimuth_deg = 180.0;   // look direction
   double elevation_deg = 10.0;  // above the horizontal
   double fov_deg = 60.0;        // vertical
+  bool operator==(const View&) const = default;
 };
 
 // Relief on the sphere, from a height map that is a square around the scene's place. Chapters below 11 have none.
@@ -68,12 +72,14 @@ struct Terrain {
   int seed = 1;                             // of its noise
   bool shadows = true;                      // it keeps the sun from itself and from the air
   std::optional<double> signs_azimuth_deg;  // a row of signs at 1 to 100 km in this direction
+  bool operator==(const Terrain&) const = default;
 };
 
 struct Post {
   bool manual = false;           // exposure set by hand even where a chapter has a light meter (06 on)
   double exposure_ev = 0.0;      // set by hand: stops, on top of the chapter's base exposure
   double compensation_ev = 0.0;  // metered: stops, on top of what the meter finds
+  bool operator==(const Post&) const = default;
 };
 
 struct Scene {
@@ -89,6 +95,7 @@ struct Scene {
   const Medium* medium(const std::string& kind) const;  // nullptr if the scene has none
   Medium* medium(const std::string& kind);
   const View& view(const std::string& name) const;  // "" = first; throws listing the names
+  bool operator==(const Scene&) const = default;
 };
 
 // Names that need no file: earth, alien, today, noon, sunset, twilight, orbit (chapters/scenes/NAME.toml), a path to a
@@ -102,11 +109,11 @@ Scene parse_scene(const std::string& text, const std::string& file);
 std::string write_scene(const Scene& scene);
 
 // One effect of the scene and whether it is simulated, for --explain: "ozone", on, "medium 'ozone' in scene".
-struct Effect {
+struct Constituent {
   std::string name;
   bool on = false;
   std::string why;
 };
-std::vector<Effect> effects(const Scene& scene);
+std::vector<Constituent> constituents(const Scene& scene);
 
 }  // namespace welkin

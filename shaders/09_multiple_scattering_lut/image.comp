@@ -2,7 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 8, local_size_y = 8) in;
-#include "interop/camera.h"
+#include "interop/view_block.glsl"
 #include "03_planet_and_rays/camera.glsl"
 layout(binding = 1) uniform sampler2D table;
 vec3 read_multiple_scattering_table(vec2 uv) { return textureLod(table, uv, 0.0).rgb; }
@@ -12,18 +12,17 @@ vec3 read_multiple_scattering_table(vec2 uv) { return textureLod(table, uv, 0.0)
 layout(constant_id = 7) const bool SUN_DISC = true;
 layout(binding = 2, rgba32f) uniform writeonly image2D target;
 layout(push_constant) uniform Push {
-  CameraRays camera;
   ivec4 steps;  // x: first order, y: table
 };
 
 // [image]
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, camera.size))) return;
+  if (any(greaterThanEqual(pixel, frame.camera.size))) return;
   const Atmosphere air = atmosphere;
-  const vec3 view = camera_direction(camera, pixel);
-  const vec3 sun = camera.sun;
-  const float altitude_km = camera.altitude_km;
+  const vec3 view = camera_direction(frame.camera, pixel);
+  const vec3 sun = frame.camera.sun;
+  const float altitude_km = frame.camera.altitude_km;
   const vec3 disc = SUN_DISC ? sun_disc_radiance(air.solar_irradiance, air.sun_angular_radius, one_minus_cosine(view, sun)) : vec3(0.0);
   const bool on_disc = SUN_DISC && disc.g > 0.0;
   const RayLight sky = all_orders_light(air, altitude_km, view, sun, steps.x, steps.y, on_disc);

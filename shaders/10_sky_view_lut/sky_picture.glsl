@@ -3,7 +3,7 @@
 #define WELKIN_SKY_PICTURE_GLSL
 
 layout(local_size_x = 8, local_size_y = 8) in;
-#include "interop/camera.h"
+#include "interop/view_block.glsl"
 #include "03_planet_and_rays/camera.glsl"
 #include "04_air/variant.glsl"
 #include "04_air/medium.glsl"
@@ -22,17 +22,14 @@ layout(binding = 0, std140) uniform Air {
   Atmosphere atmosphere;
 };
 layout(binding = 3, rgba32f) uniform writeonly image2D target;
-layout(push_constant) uniform Push {
-  CameraRays camera;
-};
 
 // [sky]
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, camera.size))) return;
-  const vec3 view = camera_direction(camera, pixel);
-  const vec3 sun = camera.sun;
-  const float altitude_km = camera.altitude_km;
+  if (any(greaterThanEqual(pixel, frame.camera.size))) return;
+  const vec3 view = camera_direction(frame.camera, pixel);
+  const vec3 sun = frame.camera.sun;
+  const float altitude_km = frame.camera.altitude_km;
   vec3 radiance = sky_view_radiance(atmosphere.ground_radius_km, altitude_km, view, sun);
 #ifdef SUN_DISC
   // The disc is too small for any table: it is drawn, through the air that chapter 08's table knows.

@@ -3,7 +3,7 @@
 #ifndef WELKIN_AERIAL_BLOCK_GLSL
 #define WELKIN_AERIAL_BLOCK_GLSL
 
-#include "interop/camera.h"
+#include "interop/view_block.glsl"
 #include "03_planet_and_rays/camera.glsl"
 #include "11_aerial_perspective/terrain.glsl"
 
@@ -17,10 +17,10 @@ layout(constant_id = 21) const float POWER = 2.0;
 layout(binding = 1) uniform sampler2D multiple_scattering_table;
 layout(binding = 2) uniform sampler2D shadow_map;
 layout(push_constant) uniform Push {
-  CameraRays camera;
-  vec4 position;  // xyz: of the camera, global frame, km; w: extent of the map, km
-  vec4 east;      // xyz: of the camera's local frame, in the global one; w: farthest froxel, km
-  vec4 north;     // xyz: likewise; w: azimuth of the row of signs, rad, below -100 without
+  float extent_km;      // of the map
+  float farthest_km;    // froxel
+  float signs_azimuth;  // of the row of signs, rad, below -100 without
+  float unused;
 };
 
 vec3 read_multiple_scattering_table(vec2 uv) { return textureLod(multiple_scattering_table, uv, 0.0).rgb; }
@@ -33,7 +33,7 @@ vec3 ray_direction;
 // [sun_behind_terrain]
 // The shadow map says for every place from which altitude on the sun is seen, and how wide the half shadow is.
 float sun_over(vec2 place_km, float altitude_km) {
-  const vec2 shadow = textureLod(shadow_map, map_uv(place_km, position.w), 0.0).rg;
+  const vec2 shadow = textureLod(shadow_map, map_uv(place_km, extent_km), 0.0).rg;
   return disc_above((altitude_km - shadow.x) / shadow.y);
 }
 
@@ -45,7 +45,7 @@ float sun_behind_terrain(float t_km, float altitude_km) {
 
 #include "11_aerial_perspective/aerial.glsl"
 
-vec3 to_global(vec3 local) { return east.xyz * local.x + north.xyz * local.y + cross(east.xyz, north.xyz) * local.z; }
+vec3 to_global(vec3 local) { return frame.east * local.x + frame.north * local.y + cross(frame.east, frame.north) * local.z; }
 
 // Sets the ray of sun_behind_terrain() and clips it to the air; gives how far away that begins.
 struct ClippedRay {
@@ -54,11 +54,11 @@ struct ClippedRay {
 };
 ClippedRay clipped_ray(vec3 view, float altitude_km) {
   ClippedRay ray;
-  ray.air = enter_air(atmosphere, altitude_km, view, camera.sun);
+  ray.air = enter_air(atmosphere, altitude_km, view, frame.camera.sun);
   ray.begins_km = 0.0;
   if (altitude_km > atmosphere.top_km) ray.begins_km = max(distance_to_shell_from_outside(atmosphere.ground_radius_km, altitude_km, view.z, length(view.xy), atmosphere.top_km), 0.0);
   ray_direction = to_global(view);
-  ray_start_km = position.xyz + ray_direction * ray.begins_km;
+  ray_start_km = frame.position_km + ray_direction * ray.begins_km;
   return ray;
 }
 

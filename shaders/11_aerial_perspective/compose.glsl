@@ -24,7 +24,7 @@ layout(binding = 9, rgba32f) uniform writeonly image2D target;
 // The air up to a distance from the froxels, filtered. place: 0 ... 1 over the picture.
 RayLight froxel_light(vec2 place, float t_km) {
   const vec3 count = vec3(textureSize(glows, 0));
-  const float s = slices_before(t_km, count.z, east.w, POWER);
+  const float s = slices_before(t_km, count.z, farthest_km, POWER);
   // Texel k holds the end of slice k: s = k + 1 is found at its centre. Before the first one the air is taken as that up to it.
   const vec3 uvw = vec3(0.5 / count.xy + place * (1.0 - 1.0 / count.xy), (max(s, 1.0) - 0.5) / count.z);
   const vec4 stored = textureLod(glows, uvw, 0.0);
@@ -38,13 +38,13 @@ RayLight froxel_light(vec2 place, float t_km) {
 
 // The same without them: from above the air and beyond the last slice there are none.
 RayLight air_before(Atmosphere air, vec2 place, vec3 view, float t_km) {
-  const bool above = camera.altitude_km >= air.top_km;
+  const bool above = frame.camera.altitude_km >= air.top_km;
 #if FROXELS
-  if (!above && t_km <= east.w) return froxel_light(place, t_km);
+  if (!above && t_km <= farthest_km) return froxel_light(place, t_km);
 #endif
-  const ClippedRay ray = clipped_ray(view, camera.altitude_km);
+  const ClippedRay ray = clipped_ray(view, frame.camera.altitude_km);
   if (!ray.air.hits_air) return RayLight(vec3(0.0), vec3(1.0));
-  RayLight light = march_to(method_air(air, MS_METHOD), ray.air, scattering_along(air, view, camera.sun), max(t_km - ray.begins_km, 0.0), MARCH_SLICES, SAMPLES, above ? 1.0 : POWER);
+  RayLight light = march_to(method_air(air, MS_METHOD), ray.air, scattering_along(air, view, frame.camera.sun), max(t_km - ray.begins_km, 0.0), MARCH_SLICES, SAMPLES, above ? 1.0 : POWER);
   light.radiance *= air.solar_irradiance;
   return light;
 }
@@ -52,19 +52,19 @@ RayLight air_before(Atmosphere air, vec2 place, vec3 view, float t_km) {
 // [compose]
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, camera.size))) return;
+  if (any(greaterThanEqual(pixel, frame.camera.size))) return;
   const Atmosphere air = atmosphere;
-  const vec3 view = camera_direction(camera, pixel);
-  const vec3 direction = to_global(view), sun = to_global(camera.sun);
+  const vec3 view = camera_direction(frame.camera, pixel);
+  const vec3 direction = to_global(view), sun = to_global(frame.camera.sun);
 
   const float depth = texelFetch(depth_map, pixel, 0).r;
-  float t_km = depth > 0.0 ? distance_from_depth(depth, NEAR_KM, dot(view, normalize(camera.forward))) : 1.0e9;
+  float t_km = depth > 0.0 ? distance_from_depth(depth, NEAR_KM, dot(view, normalize(frame.camera.forward))) : 1.0e9;
   bool seen = depth > 0.0;
   float paint = -1.0;
   vec3 normal = vec3(0.0);
   if (HAS_SIGNS) {
     for (int k = 0; k < kSigns; ++k) {
-      const SignHit hit = meet_sign(k, air.ground_radius_km, north.w, position.xyz, direction);
+      const SignHit hit = meet_sign(k, air.ground_radius_km, signs_azimuth, frame.position_km, direction);
       if (hit.t_km < 0.0 || hit.t_km >= t_km) continue;
       t_km = hit.t_km, paint = hit.paint, normal = hit.normal, seen = true;
     }
@@ -74,14 +74,14 @@ void main() {
     return;
   }
 
-  const vec3 point = position.xyz + direction * t_km;
+  const vec3 point = frame.position_km + direction * t_km;
   const vec2 place = place_below(air.ground_radius_km, point);
   const vec3 up = up_at(air.ground_radius_km, place);
   const float altitude = max(altitude_of(air.ground_radius_km, point), 0.0);
   vec3 albedo = vec3(paint);
   if (paint < 0.0) {
-    const vec2 uv = map_uv(place, position.w);
-    const Ground ground = ground_at(textureLod(slope_map, uv, 0.0).rg, textureLod(cover_map, uv, 0.0), air.ground_albedo, place, up, t_km / float(camera.size.y));
+    const vec2 uv = map_uv(place, extent_km);
+    const Ground ground = ground_at(textureLod(slope_map, uv, 0.0).rg, textureLod(cover_map, uv, 0.0), air.ground_albedo, place, up, t_km / float(frame.camera.size.y));
     albedo = ground.albedo, normal = ground.normal;
   } else if (dot(normal, direction) > 0.0) {
     normal = -normal;
@@ -93,7 +93,7 @@ void main() {
   const vec3 from_sky = HIGHER_ORDERS ? sky_irradiance(air, altitude, mu_sun) : vec3(0.0);
   const vec3 lit = surface_light(albedo, air.ground_albedo, normal, up, sun, beam, from_sky) * air.solar_irradiance;
 
-  const RayLight before = air_before(air, (vec2(pixel) + 0.5) / vec2(camera.size), view, t_km);
+  const RayLight before = air_before(air, (vec2(pixel) + 0.5) / vec2(frame.camera.size), view, t_km);
   imageStore(target, pixel, vec4(before.radiance + before.transmittance * lit, 1.0));
 }
 // [/compose]

@@ -36,14 +36,14 @@ void main() {
   const MethodAir method = method_air(air, MS_METHOD);
   // The outer texels lie on the picture's edges: all of the picture is between directions, nothing is extrapolated.
   const vec2 place = vec2(texel) / vec2(count - 1) * 2.0 - 1.0;
-  const vec3 view = normalize(camera.forward + camera.right * place.x - camera.up * place.y);
-  const ClippedRay in_air = clipped_ray(view, camera.altitude_km);
-  const ScatteringTowardsEye scattering = scattering_along(air, view, camera.sun);
+  const vec3 view = normalize(frame.camera.forward + frame.camera.right * place.x - frame.camera.up * place.y);
+  const ClippedRay in_air = clipped_ray(view, frame.camera.altitude_km);
+  const ScatteringTowardsEye scattering = scattering_along(air, view, frame.camera.sun);
   Veil before = no_veil();  // all slices of the rounds before
   for (int round = 0; round * THREADS < SLICES; ++round) {
     const int k = min(round * THREADS + part, SLICES - 1);
     const bool own = round * THREADS + part < SLICES && texel.y < count.y;
-    const float t_a = slice_end(float(k), float(SLICES), east.w, POWER), t_b = slice_end(float(k + 1), float(SLICES), east.w, POWER);
+    const float t_a = slice_end(float(k), float(SLICES), farthest_km, POWER), t_b = slice_end(float(k + 1), float(SLICES), farthest_km, POWER);
     if (THREADS == 1) {
       before = behind(method, in_air.air, scattering, before, t_a, t_b, SAMPLES);
       if (own) store(ivec3(texel, k), before, t_b, air.solar_irradiance);

@@ -3,7 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 8, local_size_y = 8) in;
-#include "interop/camera.h"
+#include "interop/view_block.glsl"
 #include "03_planet_and_rays/camera.glsl"
 #include "11_aerial_perspective/ground.glsl"
 #include "11_aerial_perspective/signs.glsl"
@@ -20,43 +20,40 @@ layout(binding = 2) uniform sampler2D cover_map;
 layout(binding = 3, rgba32f) uniform writeonly image2D normals;  // w: distance, 0: nothing is met
 layout(binding = 4, rgba32f) uniform writeonly image2D albedos;
 layout(push_constant) uniform Push {
-  CameraRays camera;
-  vec4 position;  // xyz: of the camera; w: of the bare ground's albedo: red,
-  vec4 east;      // xyz: of the camera's local frame; w: green,
-  vec4 north;     // xyz: likewise; w: blue
+  vec4 bare_albedo;  // rgb: of the bare ground
 };
 
 // [surfaces]
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, camera.size))) return;
-  const vec3 view = camera_direction(camera, pixel);
-  const vec3 above = cross(east.xyz, north.xyz);
-  const vec3 direction = east.xyz * view.x + north.xyz * view.y + above * view.z;
+  if (any(greaterThanEqual(pixel, frame.camera.size))) return;
+  const vec3 view = camera_direction(frame.camera, pixel);
+  const vec3 above = cross(frame.east, frame.north);
+  const vec3 direction = frame.east * view.x + frame.north * view.y + above * view.z;
 
   const float depth = texelFetch(depth_map, pixel, 0).r;
   bool seen = depth > 0.0;
-  float t_km = seen ? distance_from_depth(depth, NEAR_KM, dot(view, normalize(camera.forward))) : 1.0e9;
+  float t_km = seen ? distance_from_depth(depth, NEAR_KM, dot(view, normalize(frame.camera.forward))) : 1.0e9;
   float paint = -1.0;
   vec3 normal = vec3(0.0);
   if (HAS_SIGNS) {
     for (int k = 0; k < kSigns; ++k) {
-      const SignHit hit = meet_sign(k, RADIUS_KM, SIGNS_AZIMUTH, position.xyz, direction);
+      const SignHit hit = meet_sign(k, RADIUS_KM, SIGNS_AZIMUTH, frame.position_km, direction);
       if (hit.t_km < 0.0 || hit.t_km >= t_km) continue;
       t_km = hit.t_km, paint = hit.paint, normal = hit.normal, seen = true;
     }
   }
   vec3 albedo = vec3(paint);
   if (seen && paint < 0.0) {
-    const vec2 place = place_below(RADIUS_KM, position.xyz + direction * t_km);
+    const vec2 place = place_below(RADIUS_KM, frame.position_km + direction * t_km);
     const vec2 uv = map_uv(place, EXTENT_KM);
-    const vec3 bare = vec3(position.w, east.w, north.w);
-    const Ground ground = ground_at(textureLod(slope_map, uv, 0.0).rg, textureLod(cover_map, uv, 0.0), bare, place, up_at(RADIUS_KM, place), t_km / float(camera.size.y));
+    const vec3 bare = bare_albedo.rgb;
+    const Ground ground = ground_at(textureLod(slope_map, uv, 0.0).rg, textureLod(cover_map, uv, 0.0), bare, place, up_at(RADIUS_KM, place), t_km / float(frame.camera.size.y));
     albedo = ground.albedo, normal = ground.normal;
   } else if (dot(normal, direction) > 0.0) {
     normal = -normal;
   }
-  const vec3 local = vec3(dot(normal, east.xyz), dot(normal, north.xyz), dot(normal, above));
+  const vec3 local = vec3(dot(normal, frame.east), dot(normal, frame.north), dot(normal, above));
   imageStore(normals, pixel, seen ? vec4(local, t_km) : vec4(0.0));
   imageStore(albedos, pixel, vec4(albedo, 1.0));
 }

@@ -163,7 +163,7 @@ TEST_CASE("04 air: what a scene lacks is not compiled in, and --explain's list s
     CHECK(variant.mie == (std::string(kind) != "mie"));
     CHECK(variant.ozone == (std::string(kind) != "ozone"));
     CHECK(specialization(variant) != specialization(air_variant(scene)));
-    for (const Effect& effect : effects(less))
+    for (const Constituent& effect : constituents(less))
       if (effect.name == kind) CHECK(!effect.on);
     const interop::Atmosphere atmosphere = make_atmosphere(less);  // no shape that would divide by 0
     CHECK(atmosphere.rayleigh_scale_height_km > 0.0f);

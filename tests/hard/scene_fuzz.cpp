@@ -259,7 +259,7 @@ std::string broken(const Scene& scene) {
     if (knob.empty() || value.empty() || value.find('\n') != std::string::npos) return "settings";
   const std::string written = welkin::write_scene(scene);
   if (welkin::write_scene(welkin::parse_scene(written, "written")) != written) return "round trip";
-  return welkin::effects(scene).size() == 5 ? "" : "effects";
+  return welkin::constituents(scene).size() == 5 ? "" : "effects";
 }
 
 struct Counts {

@@ -156,7 +156,7 @@ TEST_CASE("a scene without a section has the documented default and no more", "[
   CHECK(scene.sun.zenith_deg == 45);
   CHECK(scene.views[0].fov_deg == 60);
   CHECK(scene.settings.empty());
-  for (const welkin::Effect& effect : welkin::effects(scene)) {
+  for (const welkin::Constituent& effect : welkin::constituents(scene)) {
     INFO(effect.name);
     CHECK(effect.on == (effect.name == "sun disc" || effect.name == "ground"));
     CHECK_FALSE(effect.why.empty());
@@ -166,7 +166,7 @@ TEST_CASE("a scene without a section has the documented default and no more", "[
 TEST_CASE("effects follow from what the scene contains", "[scene]") {
   Scene scene = welkin::load_scene("earth", kScenes);
   const auto on = [&](const std::string& name) {
-    for (const welkin::Effect& effect : welkin::effects(scene))
+    for (const welkin::Constituent& effect : welkin::constituents(scene))
       if (effect.name == name) return effect.on;
     throw std::out_of_range(name);
   };

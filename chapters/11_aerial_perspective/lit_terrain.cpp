@@ -1,0 +1,47 @@
+// The pass "compose". See lit_terrain.hpp.
+#include "chapters/11_aerial_perspective/lit_terrain.hpp"
+
+namespace welkin {
+
+// [compose]
+app::Effect lit_terrain() {
+  app::Effect effect{.name = "lit terrain", .chapter = 11};
+  effect.wanted = [](const Scene& scene, const Settings&) -> app::Wanted {
+    if (!scene.terrain) return {false, "no [terrain] in scene: the sky is the picture"};
+    return {true, scene.terrain->signs_azimuth_deg
+                      ? fmt::format("terrain, and signs in direction {}", *scene.terrain->signs_azimuth_deg)
+                      : "terrain, no signs"};
+  };
+  effect.key = [](const Scene& scene, const Settings&) {
+    return fmt::format("{}", scene.terrain->signs_azimuth_deg.has_value());
+  };
+  effect.declare = [](app::Builder& builder, app::Board& board) {
+    const app::Context& context = builder.context;
+    const TerrainMaps& maps = board.get<TerrainMaps>("terrain");
+    const graph::Resource behind = board.get<app::Picture>("a sky").image;
+    const Froxels* froxels = board.find<Froxels>();
+    const graph::Resource picture = builder.picture(board, "picture");
+    graph::Step step = aerial_step(context, board, froxels != nullptr ? "compose.comp" : "compose_march.comp");
+    step.constants = joined(step.constants, {{"MARCH_SLICES", context.settings.integer("aerial.march_slices")},
+                                             {"HAS_SIGNS", context.scene.terrain->signs_azimuth_deg.has_value()},
+                                             {"NEAR_KM", static_cast<float>(kNear_km)}});
+    step.bindings.insert(step.bindings.end(), {{"depth_map", maps.depth, {.filter = VK_FILTER_NEAREST}},
+                                               {"slope_map", maps.slopes},
+                                               {"cover_map", maps.cover},
+                                               {"sky", behind},
+                                               {"target", picture}});
+    if (froxels != nullptr)
+      step.bindings.insert(step.bindings.end(),
+                           {{"glows", froxels->in_scattering}, {"extinctions", froxels->extinction}});
+    step.record = [context, picture](const graph::Recorder& r) {
+      r.push(aerial_push(context)).dispatch_over(r.graph.image(picture).size);
+    };
+    graph::Pass pass{.name = "compose", .changed = [](const app::Frame&) { return true; }};
+    pass.steps.push_back(std::move(step));
+    builder.graph.add(std::move(pass));
+  };
+  return effect;
+}
+// [/compose]
+
+}  // namespace welkin

@@ -1,0 +1,157 @@
+// Pipelines by the names in their shaders. See named_pipeline.hpp.
+#include "common/gpu/named_pipeline.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "common/gpu/shader_file.hpp"
+
+namespace welkin::gpu {
+namespace {
+
+uint32_t bits_of(const Constant& constant) {
+  if (const bool* flag = std::get_if<bool>(&constant.value)) return *flag;
+  if (const int* number = std::get_if<int>(&constant.value)) return static_cast<uint32_t>(*number);
+  return std::bit_cast<uint32_t>(std::get<float>(constant.value));
+}
+
+const char* type_name(size_t type) { return type == 0 ? "bool" : type == 1 ? "int" : "float"; }
+
+// Map entries and data of the constants this shader has.
+struct Specialized {
+  std::vector<VkSpecializationMapEntry> entries;
+  std::vector<uint32_t> data;
+  VkSpecializationInfo info() const {
+    return {static_cast<uint32_t>(entries.size()), entries.data(), data.size() * sizeof(uint32_t), data.data()};
+  }
+};
+
+Specialized specialize(const std::string& shader, const ShaderInterface& interface, const Constants& constants) {
+  Specialized result;
+  for (const Constant& constant : constants) {
+    const auto found = std::find_if(interface.constants.begin(), interface.constants.end(),
+                                    [&](const ShaderConstant& c) { return c.name == constant.name; });
+    if (found == interface.constants.end()) {
+      if (constant.shared) continue;
+      std::vector<std::string> names;
+      for (const ShaderConstant& c : interface.constants) names.push_back(c.name);
+      fail("shader {}: no constant '{}'; it has {}", shader, constant.name,
+           names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", ")));
+    }
+    if (constant.value.index() != static_cast<size_t>(found->type))
+      fail("shader {}: constant '{}' is of type {}, and a {} was given", shader, constant.name,
+           type_name(static_cast<size_t>(found->type)), type_name(constant.value.index()));
+    result.entries.push_back({found->id, static_cast<uint32_t>(4 * result.data.size()), 4});
+    result.data.push_back(bits_of(constant));
+  }
+  return result;
+}
+
+ShaderModule module_of(const Device& device, const std::vector<uint32_t>& words) {
+  const VkShaderModuleCreateInfo info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+                                      .codeSize = words.size() * sizeof(uint32_t),
+                                      .pCode = words.data()};
+  VkShaderModule module = VK_NULL_HANDLE;
+  check(vkCreateShaderModule(device, &info, nullptr, &module), "vkCreateShaderModule");
+  return ShaderModule(device, module);
+}
+
+// The bindings of all stages; one that two stages have is there once.
+void unite(NamedPipeline& pipeline, const ShaderInterface& interface) {
+  pipeline.push_constant_bytes = std::max(pipeline.push_constant_bytes, interface.push_constant_bytes);
+  for (const ShaderBinding& binding : interface.bindings) {
+    const auto same = std::find_if(pipeline.bindings.begin(), pipeline.bindings.end(),
+                                   [&](const ShaderBinding& b) { return b.slot == binding.slot; });
+    if (same == pipeline.bindings.end())
+      pipeline.bindings.push_back(binding);
+    else
+      same->stages |= binding.stages;
+  }
+}
+
+void make_layouts(const Device& device, NamedPipeline& pipeline) {
+  std::vector<Binding> bindings;
+  for (ShaderBinding& binding : pipeline.bindings) {
+    if (binding.name == kViewBlock) binding.type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC;
+    bindings.push_back({binding.slot, binding.type, binding.stages});
+  }
+  pipeline.set_layout = create_set_layout(device, bindings);
+  pipeline.layout = create_pipeline_layout(device, pipeline.set_layout, pipeline.stages, pipeline.push_constant_bytes);
+}
+
+}  // namespace
+
+Constants joined(Constants first, const Constants& more) {
+  first.insert(first.end(), more.begin(), more.end());
+  return first;
+}
+
+const Pipelines::Stage& Pipelines::stage(const std::string& shader) {
+  const auto found = stages_.find(shader);
+  if (found != stages_.end()) return found->second;
+  std::vector<uint32_t> words = load_spirv(shader);
+  ShaderInterface interface = reflect(words, shader);
+  return stages_.emplace(shader, Stage{std::move(words), std::move(interface)}).first->second;
+}
+
+const ShaderInterface& Pipelines::interface_of(const std::string& shader) { return stage(shader).interface; }
+
+void Pipelines::forget() {
+  stages_.clear();
+  made_.clear();
+}
+
+std::shared_ptr<const NamedPipeline> Pipelines::get(const std::string& shader, const Constants& constants,
+                                                    const Raster* raster) {
+  std::string key = shader;
+  for (const Constant& constant : constants) key += fmt::format(" {}={}", constant.name, bits_of(constant));
+  if (raster != nullptr)
+    key += fmt::format(" {} {} {}", raster->fragment_shader, static_cast<int>(raster->colour),
+                       static_cast<int>(raster->depth));
+  std::shared_ptr<const NamedPipeline>& kept = made_[key];
+  if (kept != nullptr) return kept;
+
+  NamedPipeline pipeline{.shader = shader};
+  const Stage& first = stage(shader);
+  unite(pipeline, first.interface);
+  pipeline.stages = first.interface.stage;
+  const Specialized special = specialize(shader, first.interface, constants);
+  const VkSpecializationInfo info = special.info();
+  const ShaderModule module = module_of(device_, first.words);  // needed only while the pipeline is made
+  std::vector<VkPipelineShaderStageCreateInfo> stages{{.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                                                       .stage = first.interface.stage,
+                                                       .module = module,
+                                                       .pName = "main",
+                                                       .pSpecializationInfo = &info}};
+  ShaderModule second_module;
+  Specialized second_special;
+  VkSpecializationInfo second_info{};
+  if (raster != nullptr && !raster->fragment_shader.empty()) {
+    const Stage& second = stage(raster->fragment_shader);
+    unite(pipeline, second.interface);
+    pipeline.stages |= second.interface.stage;
+    second_special = specialize(raster->fragment_shader, second.interface, constants);
+    second_info = second_special.info();
+    second_module = module_of(device_, second.words);
+    stages.push_back(stages.front());
+    stages.back().stage = second.interface.stage, stages.back().module = second_module,
+    stages.back().pSpecializationInfo = &second_info;
+  }
+  make_layouts(device_, pipeline);
+  if (raster != nullptr) {
+    pipeline.bind_point = VK_PIPELINE_BIND_POINT_GRAPHICS;
+    pipeline.handle = create_raster_pipeline(device_, stages, pipeline.layout, raster->colour, raster->depth);
+  } else {
+    const VkComputePipelineCreateInfo compute{
+        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO, .stage = stages.front(), .layout = pipeline.layout};
+    VkPipeline handle = VK_NULL_HANDLE;
+    check(vkCreateComputePipelines(device_, VK_NULL_HANDLE, 1, &compute, nullptr, &handle), "vkCreateComputePipelines");
+    pipeline.handle = PipelineHandle(device_, handle);
+  }
+  device_.set_name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<uint64_t>(static_cast<VkPipeline>(pipeline.handle)),
+                   shader);
+  kept = std::make_shared<const NamedPipeline>(std::move(pipeline));
+  return kept;
+}
+
+}  // namespace welkin::gpu

@@ -1,0 +1,72 @@
+// Pipelines whose bindings and constants have names: those their shader gives them. Used by the frame graph.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "common/gpu/pipeline.hpp"
+#include "common/gpu/spirv.hpp"
+
+namespace welkin::gpu {
+
+// The value of a specialization constant. `shared` constants are handed to every shader that might have them (what the
+// air is made of); others must be there.
+struct Constant {
+  std::string name;
+  std::variant<bool, int, float> value;
+  bool shared = false;
+  bool operator==(const Constant&) const = default;
+};
+using Constants = std::vector<Constant>;
+
+Constants joined(Constants first, const Constants& more);
+
+// What a graphics pipeline is beside its shaders: formats of what it draws into (UNDEFINED: none), reversed depth.
+struct Raster {
+  std::string fragment_shader;  // empty: depth only
+  VkFormat colour = VK_FORMAT_UNDEFINED, depth = VK_FORMAT_UNDEFINED;
+  bool operator==(const Raster&) const = default;
+};
+
+struct NamedPipeline {
+  std::string shader;
+  VkPipelineBindPoint bind_point = VK_PIPELINE_BIND_POINT_COMPUTE;
+  VkShaderStageFlags stages = VK_SHADER_STAGE_COMPUTE_BIT;
+  std::vector<ShaderBinding> bindings;
+  uint32_t push_constant_bytes = 0;
+  SetLayout set_layout;
+  PipelineLayout layout;
+  PipelineHandle handle;
+};
+
+// The uniform block of this name is bound with an offset that changes from frame to frame.
+inline constexpr const char* kViewBlock = "View";
+
+// Every pipeline that was asked for, by shader and constants: asked for again, it is the same one.
+class Pipelines {
+ public:
+  explicit Pipelines(const Device& device) : device_(device) {}
+  // shader: as in load_spirv; the vertex shader with `raster`. Throws Error on a constant the shader does not have or
+  // that has another type there, saying which it has.
+  std::shared_ptr<const NamedPipeline> get(const std::string& shader, const Constants& constants,
+                                           const Raster* raster = nullptr);
+  const ShaderInterface& interface_of(const std::string& shader);
+  void forget();  // shaders were compiled anew
+  size_t count() const { return made_.size(); }
+
+ private:
+  struct Stage {
+    std::vector<uint32_t> words;
+    ShaderInterface interface;
+  };
+  const Stage& stage(const std::string& shader);
+
+  const Device& device_;
+  std::map<std::string, Stage> stages_;
+  std::map<std::string, std::shared_ptr<const NamedPipeline>> made_;
+};
+
+}  // namespace welkin::gpu
