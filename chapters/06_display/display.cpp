@@ -146,7 +146,7 @@ static graph::Pass exposure_pass(const app::Context& context, graph::Resource hi
                           const auto share = [&](const char* knob) {
                             return static_cast<float>(adapted_share(r.frame.seconds, settings.number(knob)));
                           };
-                          const bool snap = r.frame.index == 0 || std::exchange(fresh, false);
+                          const bool first = std::exchange(fresh, false), snap = r.frame.index == 0 || first;
                           r.push(ExposePush{.low = number("exposure.low"),
                                             .high = number("exposure.high"),
                                             .to_bright = share("exposure.to_bright_s"),

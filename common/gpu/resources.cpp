@@ -22,7 +22,7 @@ Memory allocate(const Device& device, const VkMemoryRequirements& needs, VkMemor
 }  // namespace
 
 AccountEntry::AccountEntry(const Device& device, const std::string& name, uint64_t bytes)
-    : device_(&device), name_(name) {
+    : device_(&device), name_(name), bytes_(bytes) {
   device.allocations().push_back({name, bytes});
   ++device.allocation_count();
 }

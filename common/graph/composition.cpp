@@ -224,10 +224,10 @@ std::vector<ProbeResult> Composition::probe(std::span<const ProbeRay> rays) {
   return probe_ ? probe_(context_, rays) : Program::probe(rays);
 }
 
-uint64_t Composition::declared(const std::string& effect) const {
-  for (const State& state : states_)
-    if (state.effect.name == effect) return state.declared;
-  return 0;
+uint32_t Composition::index_of(const std::string& effect) const {
+  for (uint32_t i = 0; i < states_.size(); ++i)
+    if (states_[i].effect.name == effect) return i;
+  fail("no effect '{}' in this composition", effect);
 }
 
 std::string Composition::explain() const {

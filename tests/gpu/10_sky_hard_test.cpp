@@ -149,10 +149,10 @@ TEST_CASE("10 hard: nothing that is not a number, from anywhere") {
 
 TEST_CASE("10 hard: only what changed runs again") {
   Scene scene = orders_scene("noon");
-  Settings settings(sky_knobs());
+  Settings settings(app::knobs_of(sky_effects(), 10));
   const std::string no_fault;
   const app::Context context{device(), scene, settings, no_fault};
-  SkyProgram sky(context);
+  app::Composition sky(context, sky_effects());
   const app::Chapter chapter;
   app::Renderer renderer(context, chapter, sky, {32, 18});
   app::CameraPose pose = app::pose_of(scene.view(""));
