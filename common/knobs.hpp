@@ -23,6 +23,7 @@ struct Knob {
   std::vector<std::string> choices;  // if not empty, the value is an index into these names
   std::vector<double> ladder;        // cheap → converged; empty: the sweep leaves this knob at its default
   bool rebuilds = false;             // true: a change makes new pipelines (it is compiled into the shader)
+  std::string effect;                // the effect that declares it; empty: the chapter's own
 };
 
 // One list after the other: a chapter's own knobs and those of the chapters it uses.
