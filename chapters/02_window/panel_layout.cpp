@@ -13,8 +13,8 @@ namespace welkin {
 namespace {
 
 constexpr float kMargin = 8.0f;
-constexpr float kNarrow = 230.0f;    // below this a widget stands under its name
-constexpr float kNameShare = 0.44f;  // of a row
+constexpr float kNarrow = 175.0f;    // below this a widget stands under its name
+constexpr float kNameShare = 0.46f;  // of a row
 constexpr float kTooltipWidth = 320.0f;
 constexpr float kTall = 540.0f;  // a window from this height on has room for the times
 
@@ -35,14 +35,17 @@ void tooltip(const std::string& text) {
   ImGui::EndTooltip();
 }
 
+bool narrow() { return ImGui::GetContentRegionAvail().x < kNarrow; }
+float name_width() { return ImGui::GetContentRegionAvail().x * (narrow() ? 1.0f : kNameShare) - kMargin; }
+
 // The name of a row; the widget that follows takes the rest of it.
 void name_of_row(const std::string& name, const std::string& help) {
-  const float width = ImGui::GetContentRegionAvail().x;
-  const bool narrow = width < kNarrow;
+  const float room = name_width();
+  const bool beside = !narrow();
   ImGui::AlignTextToFramePadding();
-  ImGui::TextUnformatted(fitted(name, narrow ? width : kNameShare * width - kMargin).c_str());
+  ImGui::TextUnformatted(fitted(name, room).c_str());
   tooltip(help);
-  if (!narrow) ImGui::SameLine(kNameShare * width + kMargin);
+  if (beside) ImGui::SameLine(ImGui::GetCursorPosX() + room + kMargin);
   ImGui::SetNextItemWidth(-1.0f);
 }
 
@@ -78,12 +81,21 @@ double knob_value(const Knob& knob, double before) {
   return moved ? std::clamp(static_cast<double>(value), knob.minimum, knob.maximum) : before;
 }
 
-// A knob in a row, under its own effect without the effect's name.
-void knob_row(const Knob& knob, Settings& settings, PanelState& state) {
-  const std::string prefix = knob.effect + ".";
-  const bool short_name = !knob.effect.empty() && knob.name.starts_with(prefix);
+// A knob's name as it is read: without what its heading or its unit says, and without its first part where there is not
+// room for all. The tooltip has the whole.
+std::string shown_name(const Knob& knob, const std::string& heading, float width) {
+  std::string name = knob.name;
+  if (!heading.empty() && name.starts_with(heading + ".")) name.erase(0, heading.size() + 1);
+  if (!knob.unit.empty() && name.ends_with("_" + knob.unit)) name.resize(name.size() - knob.unit.size() - 1);
+  std::replace(name.begin(), name.end(), '_', ' ');
+  if (fitted(name, width) != name) name.erase(0, name.find('.') + 1);
+  return name;
+}
+
+// A knob in a row; under the heading of its effect its name goes without the effect's.
+void knob_row(const Knob& knob, const std::string& heading, Settings& settings, PanelState& state) {
   const std::string help = fmt::format("{}\n--set {}={}", knob.meaning, knob.name, settings.text(knob.name));
-  name_of_row(short_name ? knob.name.substr(prefix.size()) : knob.name, help);
+  name_of_row(shown_name(knob, heading, name_width()), help);
   const double before = settings.number(knob.name), after = knob_value(knob, before);
   tooltip(help);
   if (after == before) return;
@@ -106,7 +118,8 @@ void time_rows(const Scene& scene, PanelState& state) {
     name_of_row("date, UTC", "the scene's moment and place, from which the sun's angles follow");
     ImGui::TextWrapped("%s", scene.sun.utc->c_str());
   }
-  name_of_row("hours from then", "turns the sky about the planet's axis: 15 degrees an hour (--time, in seconds)");
+  name_of_row(scene.sun.utc ? "hours later" : "time",
+              "turns the sky about the planet's axis: 15 degrees an hour (--time, in seconds)");
   float hours = static_cast<float>(state.time_s / 3600.0);
   if (ImGui::SliderFloat("##time", &hours, -12.0f, 12.0f, "%+.2f h")) state.time_s = 3600.0 * hours;
 }
@@ -126,15 +139,16 @@ void scene_section(const PanelContext& shown, Settings& settings, PanelState& st
   choice_row("scene", "a shipped scene, loaded as --scene does; a scene file or a picture can be dropped on the window",
              shown.scene.name, shown.scenes, state.scene_asked);
   choice_row("view", "where to look from, and where to: --view", state.view_now, views, state.view_asked);
-  const auto rows = [&](bool in_front) {
+  const auto group = [](const Knob& knob) { return knob.name.substr(0, knob.name.find('.')); };
+  const auto rows = [&](auto&& wanted) {
     for (const Knob& knob : settings.knobs())
-      if (of_scene(shown.chapter, knob) && in_front == (knob.name.starts_with("sun.") || knob.name.starts_with("exposure.")))
-        knob_row(knob, settings, state);
+      if (of_scene(shown.chapter, knob) && wanted(group(knob))) knob_row(knob, "", settings, state);
   };
   time_rows(shown.scene, state);
-  rows(true);
-  if (!ImGui::TreeNodeEx("air and ground", ImGuiTreeNodeFlags_NoTreePushOnOpen | ImGuiTreeNodeFlags_SpanAvailWidth)) return;
-  rows(false);
+  rows([](const std::string& name) { return name == "sun"; });
+  rows([](const std::string& name) { return name == "exposure"; });
+  if (ImGui::TreeNodeEx("air and ground", ImGuiTreeNodeFlags_NoTreePushOnOpen | ImGuiTreeNodeFlags_SpanAvailWidth))
+    rows([](const std::string& name) { return name != "sun" && name != "exposure"; });
 }
 
 // This chapter's own knobs, open; then those of every effect it uses, folded.
@@ -148,14 +162,14 @@ void knob_sections(const PanelContext& shown, Settings& settings, PanelState& st
     std::replace(title.begin(), title.end(), '_', ' ');
     if (!ImGui::CollapsingHeader(title.c_str(), effect.empty() ? ImGuiTreeNodeFlags_DefaultOpen : 0)) continue;
     for (const Knob& knob : shown.chapter.knobs)
-      if (knob.effect == effect && !of_scene(shown.chapter, knob)) knob_row(knob, settings, state);
+      if (knob.effect == effect && !of_scene(shown.chapter, knob)) knob_row(knob, effect, settings, state);
   }
 }
 
 void time_section(const PanelContext& shown, bool open, const PanelState& state) {
   const float total = shown.history_ms[(shown.oldest + shown.history_ms.size() - 1) % shown.history_ms.size()];
   // What follows ### is the header's name to the library, the rest is what is read.
-  const std::string title = fmt::format("Time {:.3g} ms###times", total);
+  const std::string title = fmt::format("Time {:.{}f} ms###times", total, total < 10.0f ? 2 : total < 100.0f ? 1 : 0);
   if (!ImGui::CollapsingHeader(title.c_str(), open ? ImGuiTreeNodeFlags_DefaultOpen : 0)) return;
   const float width = ImGui::GetContentRegionAvail().x;
   for (const gpu::PassTime& pass : state.times) {
@@ -173,6 +187,12 @@ void time_section(const PanelContext& shown, bool open, const PanelState& state)
                      shown.device.candidate().name.c_str());
 }
 
+std::string camera_text(const PanelContext& shown) {
+  const double km = app::altitude_km(shown.pose, shown.scene.planet.ground_radius_km);
+  return fmt::format("{:.4g} {}  az {:.0f}°  el {:+.0f}°", km < 1.0 ? 1000.0 * km : km, km < 1.0 ? "m" : "km",
+                     shown.pose.azimuth_deg, shown.pose.elevation_deg);
+}
+
 // A button for a key, beside the one before if there is room.
 void key_button(const char* label, int key, const char* help, PanelState& state) {
   const float width = ImGui::CalcTextSize(label).x + 2.0f * ImGui::GetStyle().FramePadding.x;
@@ -184,12 +204,15 @@ void key_button(const char* label, int key, const char* help, PanelState& state)
 }
 
 void keys(const PanelContext& shown, PanelState& state) {
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {3.0f, 2.0f});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {3.0f, 3.0f});
   key_button(state.flying ? "F panel" : "F fly", 'F', "W A S D, Space, Ctrl, Shift and the mouse; F again ends it",
              state);
-  key_button("P picture", 'P', "saves a picture that restores this view", state);
+  key_button("P save", 'P', "saves a picture that restores this view", state);
   if (shown.chapter.truth) key_button("T truth", 'T', "path-traces this view: how far is the method from it?", state);
-  key_button("R shaders", 'R', "compiles the shaders anew", state);
+  key_button("R reload", 'R', "compiles the shaders anew", state);
   key_button("H hide", 'H', "hides the panel, and shows it again", state);
+  ImGui::PopStyleVar(2);
 }
 
 }  // namespace
@@ -203,24 +226,23 @@ void set_style() {
   style.WindowPadding = {8.0f, 6.0f};
   style.ScrollbarSize = 10.0f;
   style.Colors[ImGuiCol_WindowBg].w = 0.86f;
+  style.Colors[ImGuiCol_SliderGrab].w = style.Colors[ImGuiCol_SliderGrabActive].w = 0.5f;  // the number shows through
 }
 
 void lay_out(const PanelContext& shown, PixelSize size, Settings& settings, PanelState& state) {
-  // As wide as it was made, as tall as it needs: the height is fitted anew in every frame.
+  // As wide as it was made, as tall as it was full in the frame before; the first time the library finds the height.
   const float most = std::max(size.width - 2.0f * kMargin, 1.0f),
               tallest = std::max(size.height - 2.0f * kMargin, 1.0f);
-  if (state.width == 0.0f) state.width = std::clamp(0.3f * size.width, 190.0f, 330.0f);
+  if (state.width == 0.0f) state.width = std::clamp(0.25f * size.width, 250.0f, 330.0f);
   ImGui::SetNextWindowPos({kMargin, kMargin}, ImGuiCond_FirstUseEver);
   ImGui::SetNextWindowSizeConstraints({std::min(120.0f, most), 0.0f}, {most, tallest});
-  ImGui::SetNextWindowSize({state.width, 0.0f});
+  ImGui::SetNextWindowSize({state.width, state.height});
   const std::string title = fmt::format("{:02} {}###panel", shown.chapter.number, shown.chapter.title);
   if (ImGui::Begin(title.c_str())) {
     ImGui::PushTextWrapPos(0.0f);
     if (!state.message.empty()) ImGui::TextColored({1.0f, 0.82f, 0.4f, 1.0f}, "%s", state.message.c_str());
-    ImGui::TextDisabled("%.4g km up, %.0f° az, %.0f° el",
-                        app::altitude_km(shown.pose, shown.scene.planet.ground_radius_km), shown.pose.azimuth_deg,
-                        shown.pose.elevation_deg);
-    tooltip("the camera: altitude above the sphere, azimuth from north over east, elevation");
+    ImGui::TextUnformatted(fitted(camera_text(shown), ImGui::GetContentRegionAvail().x).c_str());
+    tooltip("the camera: height above the sphere; azimuth, from north over east; elevation");
     keys(shown, state);
     scene_section(shown, settings, state);
     knob_sections(shown, settings, state);
@@ -228,6 +250,7 @@ void lay_out(const PanelContext& shown, PixelSize size, Settings& settings, Pane
     if (ImGui::CollapsingHeader("About")) ImGui::TextWrapped("%s", shown.chapter.whats_new.c_str());
     ImGui::PopTextWrapPos();
     state.width = ImGui::GetWindowWidth();
+    state.height = std::min(ImGui::GetCursorPosY() + ImGui::GetStyle().WindowPadding.y, tallest);
   }
   ImGui::End();
 }
