@@ -29,11 +29,9 @@ std::filesystem::path behind_links(const std::filesystem::path& name) {
   std::filesystem::path target = name;
   std::error_code error;
   for (int links = 0; std::filesystem::is_symlink(target, error); ++links) {
-    const std::filesystem::path next = std::filesystem::read_symlink(target, error);
-    if (error) fail("cannot write '{}': {}", name.string(), error.message());
     if (links == 40)
       fail("cannot write '{}': its symbolic links lead in a circle", name.string());  // Linux's own limit
-    target = target.parent_path() / next;
+    target = target.parent_path() / std::filesystem::read_symlink(target, error);
   }
   return target;
 }

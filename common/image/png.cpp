@@ -61,29 +61,6 @@ struct Png {
   }
 };
 
-bool is_utf8(std::string_view text) {
-  for (size_t i = 0; i < text.size();) {
-    const auto lead = static_cast<uint8_t>(text[i]);
-    const size_t length = lead < 0x80 ? 1 : lead >> 5 == 6 ? 2 : lead >> 4 == 14 ? 3 : lead >> 3 == 30 ? 4 : 0;
-    if (length == 0 || length > text.size() - i) return false;
-    for (const size_t end = i++ + length; i < end; ++i)
-      if ((static_cast<uint8_t>(text[i]) & 0xC0) != 0x80) return false;
-  }
-  return true;
-}
-
-// tEXt and zTXt are Latin-1 by the standard, though some programs that re-save a picture put UTF-8 there.
-std::string as_utf8(const std::string& text) {
-  if (is_utf8(text)) return text;
-  std::string out;
-  for (const char c : text) {
-    const auto byte = static_cast<uint8_t>(c);
-    if (byte >= 0x80) out += static_cast<char>(0xC0 | byte >> 6);
-    out += static_cast<char>(byte >= 0x80 ? 0x80 | (byte & 0x3F) : byte);
-  }
-  return out;
-}
-
 // ASCII goes into tEXt, which every tool shows; anything else into iTXt, which is UTF-8.
 void add_text(LodePNGInfo& info, const std::string& key, const std::string& text) {
   const auto printable = [](char c) { return c > ' ' && c <= '~'; };
@@ -149,7 +126,7 @@ std::optional<std::string> read_png_text(const std::filesystem::path& file, cons
     png.check(lodepng_inspect_chunk(&png.state, chunk, png.at(0), png.bytes.size()), "text '" + key + "' of the PNG");
     const std::string text = info.text_num > 0 ? info.text_strings[0] : info.itext_strings[0];
     if (text.size() > kMaxText) fail("{}: PNG text '{}' is larger than {} bytes", png.name, key, kMaxText);
-    return as_utf8(text);
+    return text;
   }
   return std::nullopt;
 }

@@ -23,8 +23,8 @@ void write_png8(const std::filesystem::path& file, const Image8& picture, const 
 Image8 read_png8(const std::filesystem::path& file);    // any PNG: widened to RGBA, 16 bits narrowed to the high byte
 Image16 read_png16(const std::filesystem::path& file);  // 16-bit grayscale and nothing else
 
-// The text stored under `key` (the first, if several), whether in a tEXt, zTXt or iTXt chunk, as UTF-8; nothing if
-// there is none.
+// The text stored under `key` (the first, if several), whether in a tEXt, zTXt or iTXt chunk; nothing if there is
+// none.
 std::optional<std::string> read_png_text(const std::filesystem::path& file, const std::string& key);
 
 }  // namespace welkin::image
