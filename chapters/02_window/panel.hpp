@@ -1,4 +1,5 @@
-// The panel: chapter, knobs, sun, time per pass, memory. Everything of Dear ImGui is in panel.cpp.
+// The panel: scene, knobs, time per pass, memory. Dear ImGui is in panel.cpp (its set-up) and panel_layout.cpp (what is
+// shown) and nowhere else.
 #pragma once
 
 #include <array>
@@ -21,11 +22,15 @@ using app::Chapter;
 struct PanelState {
   bool visible = true;
   bool flying = false;
-  bool truth_asked = false;          // its button was pressed
-  std::string message;               // shader error, "saved …": shown until the next
-  std::vector<gpu::PassTime> times;  // of the last finished frame
-  double time_s = 0.0;               // scene time, moved by the slider
-  std::vector<std::string> changed;  // knobs changed since the last frame
+  std::vector<int> keys;              // whose buttons were pressed since the last frame
+  std::string scene_asked;            // a shipped scene that was chosen since the last frame
+  std::string view_asked;             // a view of the scene, likewise
+  std::string view_now;               // the view that was chosen last
+  float width = 0.0f, height = 0.0f;  // of the panel, in pixels; 0: not yet shown
+  std::string message;                // shader error, "saved …": shown until the next
+  std::vector<gpu::PassTime> times;   // of the last finished frame
+  double time_s = 0.0;                // scene time, moved by the slider
+  std::vector<std::string> changed;   // knobs changed since the last frame
 };
 
 class Panel {

@@ -17,6 +17,7 @@
 #include "common/app/session.hpp"
 #include "common/gpu/shader_file.hpp"
 #include "common/measure/metrics.hpp"
+#include "common/scene/one_line.hpp"
 #include "common/scene/scene_knobs.hpp"
 
 namespace welkin {
@@ -131,6 +132,7 @@ struct Loop {
         pose(s.first_pose()),
         pool(gpu::create_command_pool(s.device)) {
     state.time_s = s.options.time_s;
+    state.view_now = s.scene.view(s.options.view).name;
     use_targets();
   }
   ~Loop() { swapchain.wait_for_presentation(); }
@@ -167,14 +169,33 @@ struct Loop {
     session.scene = std::move(scene);
     session.settings = std::move(settings);
     pose = pose_of(session.scene.view(""));
+    state.view_now = session.scene.view("").name;
     state.time_s = 0.0;
     drawing.follow();
     cut = true;
   }
 
+  // What is asked for while a view stands may fail: the panel says why, and the view stays.
+  template <typename Action>
+  void attempt(Action&& action) {
+    try {
+      action();
+    } catch (const std::exception& error) {
+      state.message = one_line(error.what());
+      std::fprintf(stderr, "%s: %s\n", session.chapter.name.c_str(), state.message.c_str());
+    }
+  }
+  void say(const std::string& message) {
+    state.message = message;
+    std::printf("%s\n", message.c_str());
+    std::fflush(stdout);
+  }
+
   std::string error_of_what_is_shown() const;
-  void ask_truth();
+  void save_next();
+  void reload_shaders();
   void on_key(int key);
+  void do_what_was_asked();
   bool draw(uint32_t index, double seconds);
 };
 
@@ -203,16 +224,29 @@ std::string Loop::error_of_what_is_shown() const {
       kSize.width, kSize.height, 100.0 * measure::compare(again, truth, as_it_is).relative_rmse);
 }
 
-void Loop::ask_truth() {
+// Into out/, under the next number that is free.
+void Loop::save_next() {
+  std::error_code error;
+  std::filesystem::create_directories("out", error);
+  if (error) fail("cannot save a picture: directory 'out': {}", error.message());
+  int number = 1;
+  const auto name = [&] { return fmt::format("out/{}_{:03}.png", session.chapter.name, number); };
+  while (std::filesystem::exists(name(), error)) ++number;
+  say("saved " + save(name()));
+}
+
+void Loop::reload_shaders() {
+  const std::string refusal = gpu::recompile_shaders(session.chapter.number);
+  if (!refusal.empty()) {
+    state.message = refusal;  // as many lines as the compiler wrote; the old pipelines stay
+    return;
+  }
   swapchain.wait_for_all_frames();
-  state.truth_asked = false;
-  state.message = error_of_what_is_shown();
-  fmt::print("{}\n", state.message);
-  std::fflush(stdout);
+  drawing.reload();
+  state.message = "shaders reloaded";
 }
 
 void Loop::on_key(int key) {
-  if (panel.wants_keyboard()) return;
   switch (key) {
     case GLFW_KEY_ESCAPE: glfwSetWindowShouldClose(window.handle, GLFW_TRUE); break;
     case GLFW_KEY_H: state.visible = !state.visible; break;
@@ -221,26 +255,27 @@ void Loop::on_key(int key) {
       glfwSetInputMode(window.handle, GLFW_CURSOR, state.flying ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
       glfwGetCursorPos(window.handle, &window.mouse_x, &window.mouse_y);
       break;
-    case GLFW_KEY_P: {
-      std::filesystem::create_directories("out");
-      int number = 1;
-      const auto name = [&] { return fmt::format("out/{}_{:03}.png", session.chapter.name, number); };
-      while (std::filesystem::exists(name())) ++number;
-      state.message = "saved " + save(name());
-      fmt::print("{}\n", state.message);
-      std::fflush(stdout);
-      break;
-    }
-    case GLFW_KEY_T: ask_truth(); break;
-    case GLFW_KEY_R: {
-      state.message = gpu::recompile_shaders(session.chapter.number);
-      if (!state.message.empty()) break;  // the old pipeline stays
+    case GLFW_KEY_P: attempt([&] { save_next(); }); break;
+    case GLFW_KEY_R: attempt([&] { reload_shaders(); }); break;
+    case GLFW_KEY_T:
       swapchain.wait_for_all_frames();
-      drawing.reload();
-      state.message = "shaders reloaded";
+      attempt([&] { say(error_of_what_is_shown()); });
       break;
-    }
     default: break;
+  }
+}
+
+// Keys, buttons, what was chosen in the panel, dropped files: between two frames.
+void Loop::do_what_was_asked() {
+  if (!panel.wants_keyboard())
+    for (const int key : std::exchange(window.keys, {})) on_key(key);
+  window.keys.clear();
+  for (const int key : std::exchange(state.keys, {})) on_key(key);
+  if (!state.scene_asked.empty()) window.dropped.push_back(std::exchange(state.scene_asked, {}));
+  for (const std::string& file : std::exchange(window.dropped, {})) attempt([&] { restore(file); });
+  if (const std::string view = std::exchange(state.view_asked, {}); !view.empty()) {
+    pose = pose_of(session.scene.view(view));
+    state.view_now = view;
   }
 }
 
@@ -253,12 +288,11 @@ bool Loop::draw(uint32_t index, double seconds) {
   const CameraRays camera =
       camera_rays(pose, session.scene, state.time_s, {size.width, size.height}, session.options.seed, index);
   state.changed.clear();
-  if (state.truth_asked) ask_truth();
   panel.layout(session.chapter, session.scene, session.settings, session.device, pose, state);
   if (!state.changed.empty()) apply_scene_knobs(session.settings, session.scene);
   if (drawing.stale()) {
     swapchain.wait_for_all_frames();
-    drawing.follow();
+    attempt([&] { drawing.follow(); });
   }
   gpu::begin_commands(slot->commands);
   drawing.record({slot->commands, targets.picture, camera, slot->timer, index, session.options.seed, seconds,
@@ -292,14 +326,7 @@ Exit run_window(Session& session) {
       continue;
     }
     if (window.resized) loop.resize();
-    for (const int key : std::exchange(window.keys, {})) loop.on_key(key);
-    for (const std::string& file : std::exchange(window.dropped, {})) {
-      try {
-        loop.restore(file);
-      } catch (const Error& error) {
-        loop.state.message = error.what();
-      }
-    }
+    loop.do_what_was_asked();
     const double now = glfwGetTime(), seconds = now - last;
     move_camera(window, loop.panel, loop.state, loop.pose, seconds, session.scene.planet.ground_radius_km);
     last = now;

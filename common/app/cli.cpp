@@ -13,6 +13,7 @@ namespace welkin::app {
 namespace {
 
 constexpr uint32_t kMaximumSide = 16384;
+constexpr uint32_t kMaximumSupersample = 8;
 
 VkExtent2D parse_size(const std::string& text) {
   const size_t cross = text.find('x');
@@ -72,7 +73,7 @@ bool parse_options(int argc, char** argv, const Chapter& chapter, Options& optio
   CLI::App cli{fmt::format("Welkin {:02}: {}\n{}", chapter.number, chapter.title, chapter.whats_new), chapter.name};
   cli.footer(footer(chapter));
   std::string size, validation, golden;
-  std::string frames_text, seed_text, time_text;
+  std::string frames_text, seed_text, time_text, supersample_text;
   std::vector<std::string> set, dump;
 
   cli.add_flag("--list-gpus", options.list_gpus, "List the Vulkan devices and stop")->group("device");
@@ -105,6 +106,10 @@ bool parse_options(int argc, char** argv, const Chapter& chapter, Options& optio
   cli.add_option("--output", options.output,
                  "Write the (last) picture: .png displayed, .exr linear [out/" + chapter.name + ".png]")
       ->type_name("FILE")
+      ->group("output");
+  cli.add_option("--supersample", supersample_text,
+                 "Draw the picture N times as large each way and average it, without a window [1]")
+      ->type_name("N")
       ->group("output");
   cli.add_option("--dump", dump,
                  "Write 'picture' (.exr), 'displayed' (.png), 'knobs' (.json)" +
@@ -173,6 +178,13 @@ bool parse_options(int argc, char** argv, const Chapter& chapter, Options& optio
   if (!size.empty()) options.size = parse_size(size), options.size_given = true;
   if (cli.count("--size") > 0 && size.empty()) parse_size(size);
   if (cli.count("--frames") > 0) options.frames = whole("--frames", frames_text, 1, 1000000);
+  if (cli.count("--supersample") > 0) {
+    options.supersample = whole("--supersample", supersample_text, 1, kMaximumSupersample);
+    options.headless = true;
+    if (options.list_gpus || !options.bench.empty() || !options.sweep.empty() || !options.probe.empty() ||
+        !golden.empty())
+      fail("--supersample is for pictures: not with --list-gpus, --bench, --sweep, --probe or --golden");
+  }
   if (cli.count("--seed") > 0) options.seed = whole("--seed", seed_text, 0, 2147483647);
   if (cli.count("--time") > 0 && (!parse_number(time_text, options.time_s) || std::abs(options.time_s) > 1e9))
     fail("--time {}: expected seconds from -1e9 to 1e9", time_text);

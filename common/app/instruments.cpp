@@ -12,7 +12,9 @@
 #include "common/image/csv.hpp"
 #include "common/image/display.hpp"
 #include "common/image/exr.hpp"
+#include "common/image/png.hpp"
 #include "common/measure/bench_json.hpp"
+#include "common/measure/compare.hpp"
 #include "common/measure/metrics.hpp"
 #include "common/measure/sweep.hpp"
 #include "common/scene/scene_knobs.hpp"
@@ -271,6 +273,21 @@ Exit run_probe(const Session& session) {
   return Exit::ok;
 }
 
+namespace {
+
+// Expected, got and their difference in one picture beside the build's shaders, for people to look at.
+void show_difference(const std::string& name, const Image& expected, const Image& got) {
+  const std::filesystem::path directory = gpu::shader_directory().parent_path() / "golden",
+                              file = directory / (name + ".png");
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);  // what stands in the way is said by writing
+  const float exposure = measure::choose_exposure(expected), gain = measure::choose_gain(expected, got, exposure);
+  image::write_png8(file, measure::side_by_side(expected, got, exposure, gain));
+  fmt::print("golden {}: expected, got, difference x {:g}: {}\n", name, gain, file.string());
+}
+
+}  // namespace
+
 // [golden]
 Exit run_golden(const Session& session) {
   must_have_standard_views(session);
@@ -307,7 +324,10 @@ Exit run_golden(const Session& session) {
                  : good    ? "close"
                            : "DIFFERS",
                  measure::describe(errors), same_driver ? "driver of the golden" : "another driver");
-      if (!good && session.options.golden == Golden::check) result = Exit::mismatch;
+      if (!good && session.options.golden == Golden::check) {
+        show_difference(name, golden, picture);
+        result = Exit::mismatch;
+      }
     }
     if (session.options.golden == Golden::update) {
       std::filesystem::create_directories(directory);

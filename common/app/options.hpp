@@ -31,6 +31,7 @@ struct Options {
   double time_s = 0.0;
   // output
   std::string output;
+  uint32_t supersample = 1;  // a headless picture is drawn as many times as large each way, and averaged
   std::string dump_what, dump_file;
   bool explain = false;
   // measure

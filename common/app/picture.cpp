@@ -7,6 +7,7 @@
 
 #include "common/app/progress.hpp"
 #include "common/app/session.hpp"
+#include "common/image/average.hpp"
 #include "common/image/display.hpp"
 #include "common/image/exr.hpp"
 #include "common/image/png.hpp"
@@ -57,6 +58,16 @@ void explain(const Session& session, const Program& program, Renderer& renderer,
              session.device.allocated_bytes(), allocations_by_later_frames);
 }
 
+// How large a picture is drawn to be averaged to `size`; Error if the device has no such images.
+VkExtent2D drawn_size(const Session& session, VkExtent2D size) {
+  const uint32_t n = session.options.supersample, limit = session.device.limits().maxImageDimension2D;
+  const VkExtent2D drawn{size.width * n, size.height * n};  // at most 8 * 16384
+  if (n > 1 && std::max(drawn.width, drawn.height) > limit)
+    fail("--supersample {} of {}x{} draws {}x{} pixels; accepted is up to {} a side on {}", n, size.width, size.height,
+         drawn.width, drawn.height, limit, session.device.candidate().name);
+  return drawn;
+}
+
 Exit compare_with(const Session& session, const Image& picture, const Image& reference) {
   const float exposure = static_cast<float>(kBaseExposure * std::exp2(session.scene.post.exposure_ev));
   const measure::Errors errors =
@@ -79,7 +90,8 @@ Exit run_picture(const Session& session) {
   // Drivers compile a shader at its first dispatch: a picture of one workgroup takes that out of the times shown.
   Renderer(session.context, session.chapter, *program, {8, 8})
       .draw(session.first_pose(), options.time_s, options.seed, 0);
-  Renderer renderer(session.context, session.chapter, *program, options.size_given ? options.size : kHeadlessSize);
+  Renderer renderer(session.context, session.chapter, *program,
+                    drawn_size(session, options.size_given ? options.size : kHeadlessSize));
   const CameraPose pose = session.first_pose();
   const uint32_t frames = std::max(options.frames, options.explain ? 2u : 1u);
   uint64_t allocations = 0;
@@ -91,10 +103,11 @@ Exit run_picture(const Session& session) {
   }
   allocations = session.device.allocation_count() - allocations;
 
-  const Image picture = renderer.picture();
+  const Image picture = image::averaged(renderer.picture(), options.supersample);
+  const Image8 displayed = image::averaged(renderer.displayed(), options.supersample);
   const size_t not_finite = count_not_finite(picture);
   if (options.dump_what == "picture") image::write_exr(options.dump_file, picture);
-  if (options.dump_what == "displayed") image::write_png8(options.dump_file, renderer.displayed());
+  if (options.dump_what == "displayed") image::write_png8(options.dump_file, displayed);
   if (std::count(session.chapter.images.begin(), session.chapter.images.end(), options.dump_what) > 0) {
     const gpu::Image* image = program->image(options.dump_what);
     if (image == nullptr)
@@ -109,7 +122,7 @@ Exit run_picture(const Session& session) {
   }
   if (writes) {
     if (options.output.empty()) std::filesystem::create_directories("out");
-    write_output(session, file, pose, picture, renderer.displayed());
+    write_output(session, file, pose, picture, displayed);
   }
   if (options.explain)
     explain(session, *program, renderer, allocations);

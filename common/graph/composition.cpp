@@ -106,6 +106,15 @@ bool Composition::stale() {
 
 // [rebuild]
 void Composition::rebuild() {
+  try {
+    follow();
+  } catch (...) {
+    for (State& state : states_) state.built = false;  // half of it may be gone: next time all of it is declared
+    throw;
+  }
+}
+
+void Composition::follow() {
   scene_ = context_.scene, values_ = context_.settings.values();
   bool anything = false;
   std::set<std::type_index> changed;  // what is offered otherwise than before

@@ -57,6 +57,7 @@ class Composition : public Program {
   uint32_t index_of(const std::string& effect) const;
   Wanted wanted_of(const State& state) const;
   std::string key_of(const State& state, const Wanted& wanted) const;
+  void follow();
   void declare(uint32_t index);
   void connect();
   ViewBlock view_of(const Frame& frame, const CameraRays& camera, const glm::dvec3& position_km) const;

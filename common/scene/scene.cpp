@@ -2,6 +2,8 @@
 // the TOML is in scene_parse.cpp; the format is described in docs/scenes.md.
 #include "common/scene/scene.hpp"
 
+#include <strings.h>
+
 #include <algorithm>
 #include <system_error>
 
@@ -96,14 +98,15 @@ Scene load_scene(const std::string& name_or_file, const fs::path& scenes_directo
            known_scenes(scenes_directory));
   }
   const std::string shown = one_line(path.string());
+  const bool picture = strcasecmp(path.extension().c_str(), ".png") == 0;
   std::optional<std::string> text;
   try {
-    text = path.extension() == ".png" ? image::read_png_text(path, "welkin.scene") : read_file(path, kLargestFile);
+    text = picture ? image::read_png_text(path, "welkin.scene") : read_file(path, kLargestFile);
   } catch (const Error& error) {  // those name the file as it is, line breaks included
     throw Error(error.exit_code, one_line(error.what()));
   }
   if (!text) fail("scene file {}: this picture carries no scene; accepted is a .png that a chapter wrote", shown);
-  Scene scene = parse_scene(*text, path.extension() == ".png" ? shown + " (embedded scene)" : shown);
+  Scene scene = parse_scene(*text, picture ? shown + " (embedded scene)" : shown);
   // A height map lies beside the scene that names it.
   if (scene.terrain && !scene.terrain->height_map.empty()) {
     const fs::path map = path.parent_path() / scene.terrain->height_map;  // an absolute name stays as it is

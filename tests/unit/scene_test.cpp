@@ -262,6 +262,12 @@ TEST_CASE("a picture restores the scene it carries", "[scene]") {
   const fs::path file = directory.path / "shot.png";
   welkin::image::write_png8(file, picture, {{"welkin.scene", welkin::write_scene(scene)}});
   CHECK(same(scene, welkin::load_scene(file.string(), kScenes)));
+  fs::copy_file(file, directory.path / "shot.PNG");
+  CHECK(same(scene, welkin::load_scene((directory.path / "shot.PNG").string(), kScenes)));
+  // A picture of chapter 05 that ImageMagick wrote again: its long text became a zTXt chunk.
+  const Scene resaved = welkin::load_scene((kRoot / "tests/data/resaved.png").string(), kScenes);
+  CHECK(resaved.sun.zenith_deg == 89.0);
+  CHECK(resaved.views.size() == 5);
   welkin::image::write_png8(file, picture, {{"welkin.scene", "version = 3\n"}});
   CHECK_THAT(refused([&] { welkin::load_scene(file.string(), kScenes); }),
              Catch::StartsWith("version 3 at ") &&
