@@ -148,7 +148,7 @@ void Panel::swapchain_changed(const WindowSwapchain& swapchain) {
 bool Panel::wants_mouse() const { return ImGui::GetIO().WantCaptureMouse; }
 bool Panel::wants_keyboard() const { return ImGui::GetIO().WantTextInput; }
 
-void Panel::layout(const Chapter& chapter, const Scene& scene, Settings& settings, const gpu::Device& device,
+void Panel::layout(const Chapter& chapter, Scene& scene, Settings& settings, const gpu::Device& device,
                    const CameraPose& pose, PanelState& state) {
   ImGui_ImplVulkan_NewFrame();
   ImGui_ImplGlfw_NewFrame();
@@ -169,10 +169,11 @@ void Panel::layout(const Chapter& chapter, const Scene& scene, Settings& setting
     if (!settings.knobs().empty() && ImGui::CollapsingHeader("Knobs", ImGuiTreeNodeFlags_DefaultOpen))
       for (const Knob& knob : settings.knobs())
         if (knob_widget(knob, settings)) state.changed.push_back(knob.name);
-    if (chapter.sky) {
-      float hours = static_cast<float>(state.time_s / 3600.0);
+    if (chapter.sky && !scene.sun.latitude_deg) ImGui::TextDisabled("no time of day: the scene's sun has no latitude");
+    if (chapter.sky && scene.sun.latitude_deg) {
+      float hours = static_cast<float>(scene.time_s / 3600.0);
       if (ImGui::SliderFloat("time, hours from the scene's", &hours, -12.0f, 12.0f, "%.2f"))
-        state.time_s = 3600.0 * hours;
+        scene.time_s = 3600.0 * hours;
     }
     if (ImGui::CollapsingHeader("Time per pass", ImGuiTreeNodeFlags_DefaultOpen)) {
       float total = 0.0f;

@@ -17,6 +17,7 @@
 #include "common/app/session.hpp"
 #include "common/gpu/shader_file.hpp"
 #include "common/measure/metrics.hpp"
+#include "common/scene/path.hpp"
 #include "common/scene/scene_knobs.hpp"
 
 namespace welkin {
@@ -116,7 +117,8 @@ struct Loop {
   Panel panel;
   PanelState state;
   CameraPose pose;
-  gpu::CommandPool pool;  // for screenshots
+  std::optional<double> played_s;  // of the path that is shown, over and over until the camera is taken
+  gpu::CommandPool pool;           // for screenshots
 
   Loop(Session& s, Window& w, VkSurfaceKHR surface)
       : session(s),
@@ -129,7 +131,7 @@ struct Loop {
         panel(w.handle, s.instance, s.device, swapchain),
         pose(s.first_pose()),
         pool(gpu::create_command_pool(s.device)) {
-    state.time_s = s.options.time_s;
+    if (!s.options.path.empty()) played_s = 0.0;
     use_targets();
   }
   ~Loop() { swapchain.wait_for_presentation(); }
@@ -162,13 +164,23 @@ struct Loop {
   void restore(const std::string& file) {
     Scene scene;
     Settings settings;
-    load_scene_and_settings(session.chapter, file, {}, scene, settings);  // throws before anything here changes
+    load_scene_and_settings(session.chapter, file, {}, {}, scene, settings);  // throws before anything here changes
     swapchain.wait_for_all_frames();
     session.scene = std::move(scene);
     session.settings = std::move(settings);
-    pose = pose_of(session.scene.view(""));
-    state.time_s = 0.0;
+    pose = pose_of(session.scene.view(""), session.scene.planet.ground_radius_km);
+    played_s.reset();  // a path of the scene before
     rebuild();
+  }
+
+  void play(double seconds) {
+    if (!played_s) return;
+    const Path& path = session.scene.path(session.options.path);
+    const double length_s = path.time_s.back() - path.time_s.front();
+    played_s = std::fmod(*played_s + seconds, length_s);
+    const PathPoint point = point_on(session.scene, path, path.time_s.front() + *played_s);
+    session.scene.time_s = point.moment_s;
+    pose = pose_of(point.view, session.scene.planet.ground_radius_km);
   }
 
   std::string error_of_what_is_shown() const;
@@ -197,7 +209,7 @@ std::string Loop::error_of_what_is_shown() const {
                       {session.device, scene, session.settings, session.options.inject}};
   const std::unique_ptr<Program> method = still.make_program();
   Renderer renderer(still.context, still.chapter, *method, kSize);
-  renderer.draw(pose, state.time_s, still.options.seed, 0);
+  renderer.draw(pose, scene.time_s, still.options.seed, 0);
   const Image truth = draw_truth(still, pose, kSize, 1), again = draw_truth(still, pose, kSize, 2);
   const auto as_it_is = [](const glm::vec3& value) { return value; };
   return fmt::format(
@@ -221,6 +233,7 @@ void Loop::on_key(int key) {
     case GLFW_KEY_H: state.visible = !state.visible; break;
     case GLFW_KEY_F:
       state.flying = !state.flying;
+      played_s.reset();
       glfwSetInputMode(window.handle, GLFW_CURSOR, state.flying ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
       glfwGetCursorPos(window.handle, &window.mouse_x, &window.mouse_y);
       break;
@@ -254,7 +267,7 @@ bool Loop::draw(uint32_t index, double seconds) {
   state.times = slot->timer.read();  // of this slot's earlier frame, finished now
   const VkExtent2D size = swapchain.size();
   const CameraRays camera =
-      camera_rays(pose, session.scene, state.time_s, {size.width, size.height}, session.options.seed, index);
+      camera_rays(pose, session.scene, session.scene.time_s, {size.width, size.height}, session.options.seed, index);
   state.changed.clear();
   if (state.truth_asked) ask_truth();
   panel.layout(session.chapter, session.scene, session.settings, session.device, pose, state);
@@ -309,6 +322,7 @@ Exit run_window(Session& session) {
     }
     const double now = glfwGetTime(), seconds = now - last;
     move_camera(window, loop.panel, loop.state, loop.pose, seconds, session.scene.planet.ground_radius_km);
+    loop.play(seconds);
     last = now;
     if (!loop.draw(index, index == 0 ? 0.0 : seconds)) {
       window.resized = true;

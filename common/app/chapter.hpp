@@ -21,10 +21,12 @@ namespace welkin::app {
 // How a picture becomes 8 bits until chapter 06 teaches it: values as they are, or 1 - exp(-exposure L) and sRGB.
 enum class Display { raw, exposed };
 
-// A picture a chapter is measured and tested by.
+// A picture a chapter is measured and tested by: a view, or frame `frame` of a path that is drawn in `frames` frames,
+// after all those before it.
 struct StandardView {
   std::string scene;
-  std::string view;
+  std::string view;  // or the path
+  uint32_t frame = 0, frames = 0;
 };
 
 // What a program may use for as long as it lives. Scene and settings change under it between frames.

@@ -10,8 +10,6 @@
 namespace welkin::app {
 namespace {
 
-constexpr double kHeadlessFrameSeconds = 1.0 / 60.0;  // a file has no clock
-
 struct DisplayPush {
   int32_t size[2];
   float exposure;
@@ -110,12 +108,12 @@ Renderer::Renderer(const Context& context, const Chapter& chapter, Program& prog
   program_.set_target(targets_.picture);
 }
 
-void Renderer::draw(const CameraPose& pose, double time_s, uint32_t seed, uint32_t index) {
+void Renderer::draw(const CameraPose& pose, double time_s, uint32_t seed, uint32_t index, double seconds) {
   const CameraRays camera = camera_rays(pose, context_.scene, time_s, {size().width, size().height}, seed, index);
   gpu::begin_commands(commands_);
-  const double seconds = index == 0 ? 0.0 : kHeadlessFrameSeconds;
-  record_frame(context_, program_, *display_, targets_,
-               {commands_, targets_.picture, camera, timer_, index, seed, seconds, pose.position_km});
+  record_frame(
+      context_, program_, *display_, targets_,
+      {commands_, targets_.picture, camera, timer_, index, seed, index == 0 ? 0.0 : seconds, pose.position_km});
   gpu::end_commands(commands_);
   gpu::submit_and_wait(context_.device, commands_);
 }

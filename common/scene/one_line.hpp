@@ -5,10 +5,20 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 
 namespace welkin {
+
+// Letters, digits, '_', '-' and '.': a name is typed on the command line and may become part of a file's name.
+inline bool plain_name(std::string_view text) {
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' ||
+           c == '.';
+  };
+  return !text.empty() && std::all_of(text.begin(), text.end(), plain);
+}
 
 inline std::string one_line(std::string_view text, size_t longest = 400) {
   std::string out;

@@ -34,13 +34,13 @@ TEST_CASE("camera: a view comes back from its pose") {
                     .azimuth_deg = random.uniform(0.0, 359.9),
                     .elevation_deg = random.uniform(-89.9, 89.9),
                     .fov_deg = random.uniform(1.0, 170.0)};
-    const View back = app::view_of(app::pose_of(view), kRadius);
+    const View back = app::view_of(app::pose_of(view, kRadius), kRadius);
     REQUIRE(back.altitude_km == Approx(view.altitude_km).epsilon(1e-12).margin(1e-12));
     REQUIRE(back.azimuth_deg == view.azimuth_deg);
     REQUIRE(back.elevation_deg == view.elevation_deg);
     REQUIRE(back.fov_deg == view.fov_deg);
   }
-  CHECK(app::pose_of({.elevation_deg = -90.0}).elevation_deg == -89.9);  // straight down would have no azimuth
+  CHECK(app::pose_of({.elevation_deg = -90.0}, 6360.0).elevation_deg == -89.9);  // straight down would have no azimuth
 }
 
 TEST_CASE("camera: altitude to a millimetre, at 0.5 m and at the Moon, anywhere around the planet") {
@@ -61,7 +61,7 @@ TEST_CASE("camera: altitude to a millimetre, at 0.5 m and at the Moon, anywhere 
 
 TEST_CASE("camera: no roll, whatever one does") {
   Random random(322);
-  app::CameraPose pose = app::pose_of({.altitude_km = 0.0005});
+  app::CameraPose pose = app::pose_of({.altitude_km = 0.0005}, 6360.0);
   const Scene scene;
   for (int i = 0; i < 20000; ++i) {
     app::turn(pose, random.uniform(-400.0, 400.0), random.uniform(-60.0, 60.0));
@@ -82,7 +82,7 @@ TEST_CASE("camera: no roll, whatever one does") {
 
 TEST_CASE("camera: flying never goes below half a metre") {
   Random random(323);
-  app::CameraPose pose = app::pose_of({.altitude_km = 0.01});
+  app::CameraPose pose = app::pose_of({.altitude_km = 0.01}, 6360.0);
   double lowest_km = 1e9;
   for (int i = 0; i < 50000; ++i) {
     app::turn(pose, random.uniform(-30.0, 30.0), random.uniform(-30.0, 30.0));

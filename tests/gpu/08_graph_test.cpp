@@ -206,7 +206,7 @@ struct World {
   std::string no_fault;
   app::Context context{device(), scene, settings, no_fault};
   app::Chapter chapter{.make_display = make_display};
-  app::CameraPose pose = app::pose_of(scene.view("horizon"));
+  app::CameraPose pose = app::pose_of(scene.view("horizon"), scene.planet.ground_radius_km);
 };
 
 }  // namespace
