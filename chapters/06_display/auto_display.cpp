@@ -36,17 +36,6 @@ struct DisplayPush {
 // [knobs]
 std::vector<Knob> display_knobs() {
   return {
-      {.name = "exposure.mode",
-       .meaning = "metered, set by hand (exposure.ev), or as the scene says",
-       .initial = 0,
-       .choices = {"scene", "auto", "manual"},
-       .rebuilds = true},
-      {.name = "exposure.compensation",
-       .unit = "stops",
-       .meaning = "added to the metered exposure, beside the scene's",
-       .minimum = -10.0,
-       .maximum = 10.0,
-       .initial = 0.0},
       {.name = "exposure.adaptation",
        .meaning = "share of the way to middle grey the meter goes; 1: every scene equally bright",
        .minimum = 0.0,
@@ -99,11 +88,6 @@ std::vector<Knob> display_knobs() {
 }
 // [/knobs]
 
-bool metered(const Scene& scene, const Settings& settings) {
-  const std::string& mode = settings.choice("exposure.mode");
-  return mode == "scene" ? !scene.post.manual : mode == "auto";
-}
-
 // [share]
 double adapted_share(double seconds, double tau_s) { return tau_s > 0.0 ? -std::expm1(-seconds / tau_s) : 1.0; }
 // [/share]
@@ -132,7 +116,7 @@ void AutoDisplay::make_meter() {
 
 void AutoDisplay::rebuild() {
   // The meter's own shaders have no variants, and what it has adapted to should outlive a change of curve.
-  if (!metered(context_.scene, context_.settings))
+  if (context_.scene.post.manual)
     meter_.reset();
   else if (!meter_)
     make_meter();
@@ -148,10 +132,8 @@ void AutoDisplay::rebuild() {
 }
 
 std::string AutoDisplay::explain() const {
-  const std::string& mode = context_.settings.choice("exposure.mode");
-  const char* who = mode != "scene" ? "exposure.mode" : "the scene's [post]";
-  return meter_ ? fmt::format("light meter            on   {} asks for it: passes histogram and exposure\n", who)
-                : fmt::format("light meter            off  {} sets the exposure by hand: no pass, no buffer\n", who);
+  return meter_ ? "light meter            on   post.exposure is auto: passes histogram and exposure\n"
+                : "light meter            off  post.exposure is manual: no pass, no buffer\n";
 }
 
 void AutoDisplay::set_images(const gpu::Image& picture, const gpu::Image& displayed) {
@@ -212,8 +194,7 @@ void AutoDisplay::measure(const app::Frame& frame) {
 void AutoDisplay::draw(const app::Frame& frame) {
   if (meter_) measure(frame);
   const Post& post = context_.scene.post;
-  const double stops =
-      meter_ ? post.compensation_ev + context_.settings.number("exposure.compensation") : kBaseLog2 + post.exposure_ev;
+  const double stops = meter_ ? post.compensation_ev : kBaseLog2 + post.exposure_ev;
   const gpu::TimedPass pass(frame.timer, frame.commands, "display");
   const DisplayPush push{{static_cast<int32_t>(picture_->size.width), static_cast<int32_t>(picture_->size.height)},
                          static_cast<float>(stops)};

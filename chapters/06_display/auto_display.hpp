@@ -17,9 +17,6 @@ namespace welkin {
 // exposure.* of the meter and display.* of the curve.
 std::vector<Knob> display_knobs();
 
-// The scene's `[post] exposure`, unless the knob exposure.mode says otherwise. Decided when pipelines are made.
-bool metered(const Scene& scene, const Settings& settings);
-
 // What the meter found, as it lies in its buffer.
 struct ExposureState {
   float exposure;     // log2 of the factor light is multiplied by, before compensation

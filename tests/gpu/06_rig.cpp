@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "common/scene/scene_knobs.hpp"
+
 namespace welkin::test {
 
 std::vector<Answer> evaluate_items(const std::vector<Item>& items) {
@@ -17,13 +19,14 @@ std::vector<Answer> evaluate_items(const std::vector<Item>& items) {
 }
 
 DisplayRig::DisplayRig(VkExtent2D size, const std::vector<std::pair<std::string, std::string>>& knobs, const Post& post)
-    : settings_(display_knobs()),
+    : settings_(joined(display_knobs(), scene_knobs(Scene{}))),
       context_{device(), scene_, settings_, inject_},
       pool_(gpu::create_command_pool(device())),
       commands_(gpu::allocate_commands(device(), pool_)),
       timer_(device()) {
   scene_.post = post;
   for (const auto& [name, text] : knobs) settings_.set(name, text);
+  apply_scene_knobs(settings_, scene_);
   const uint64_t before = device().allocated_bytes();
   display_ = std::make_unique<AutoDisplay>(context_);
   bytes_ = device().allocated_bytes() - before;

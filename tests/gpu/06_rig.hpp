@@ -36,6 +36,7 @@ class DisplayRig {
   std::vector<gpu::PassTime> times() { return timer_.read(); }
   AutoDisplay& display() { return *display_; }
   Settings& settings() { return settings_; }
+  Post& post() { return scene_.post; }
   // Bytes the display allocated beside the two pictures.
   uint64_t bytes() const { return bytes_; }
 

@@ -13,6 +13,7 @@
 #include "common/error.hpp"
 #include "common/image/png.hpp"
 #include "common/scene/scene_knobs.hpp"
+#include "tests/hard/scene_fields.hpp"
 
 namespace {
 
@@ -322,4 +323,10 @@ TEST_CASE("the example in docs/scenes.md is a scene", "[scene]") {
   const Scene scene = welkin::parse_scene(page.substr(begin + 8, end - begin - 8), "docs/scenes.md");
   CHECK(scene.medium("mie")->phase == welkin::Phase::double_hg);
   CHECK(scene.medium("ozone") == nullptr);
+}
+
+TEST_CASE("the tables of docs/scenes.md are those of the code", "[scene]") {
+  std::ifstream in(kRoot / "docs/generated/scene_fields.csv");
+  const std::string file{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  CHECK(file == welkin::test::scene_fields_csv());  // build/bin/scene_fuzz --fields docs/generated/scene_fields.csv
 }
