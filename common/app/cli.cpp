@@ -59,8 +59,8 @@ std::string footer(const Chapter& chapter) {
   if (chapter.sky) {
     Scene scene;
     scene.media.push_back({.kind = "mie", .phase = Phase::cornette_shanks, .g = 0.8});
-    text += "\n" +
-            describe_knobs("Of the scene (default: what the scene says; here the neutral values):", scene_knobs(scene));
+    text += "\n" + describe_knobs("Of the scene (default: what the scene says; here the neutral values):",
+                                  scene_knobs(scene, chapter.make_display != nullptr));
   }
   return text +
          "\nExit codes: 0 ok, 1 mismatch, 2 usage or bad input, 3 validation message, 77 skipped (no Vulkan device).";

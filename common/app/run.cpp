@@ -115,10 +115,7 @@ void load_scene_and_settings(const Chapter& chapter, const std::string& scene_na
                              Scene& scene, Settings& settings) {
   scene = load_scene(scene_name, scenes_directory());
   std::vector<Knob> knobs = chapter.knobs;
-  if (chapter.sky) knobs = joined(std::move(knobs), scene_knobs(scene));
-  if (!chapter.make_display)  // no light meter
-    std::erase_if(
-        knobs, [](const Knob& knob) { return knob.name == "exposure.mode" || knob.name == "exposure.compensation"; });
+  if (chapter.sky) knobs = joined(std::move(knobs), scene_knobs(scene, chapter.make_display != nullptr));
   settings = Settings(std::move(knobs));
   // A picture of another chapter may carry knobs this one lacks: the scene's are hints, the command line's are orders.
   for (const auto& [name, text] : scene.settings)

@@ -14,24 +14,18 @@ struct KnobVisitor : Visitor {
   template <typename T>
   void operator()(const char*, T& value, const Range& range, const char* meaning, const More& more = {}) {
     const bool set = settings != nullptr && *more.knob && settings->has(more.knob) && settings->was_set(more.knob);
-    Knob knob{.name = more.knob,
-              .unit = range.unit,
-              .meaning = meaning,
-              .minimum = more.azimuth ? 0.0 : range.minimum,
-              .maximum = range.maximum,
-              .initial = double(choice_of(range, value)),
-              .choices = {range.choices.begin(), range.choices.end()}};
+    Knob knob{.name = more.knob, .unit = range.unit, .meaning = meaning};
     if constexpr (std::is_same_v<T, double>) {
       if (set) value = more.azimuth ? turned(settings->number(more.knob)) : settings->number(more.knob);
-      knob.initial = value;
+      knob.initial = value, knob.minimum = more.azimuth ? 0.0 : range.minimum, knob.maximum = range.maximum;
     } else if constexpr (std::is_same_v<T, glm::dvec3>) {
       if (set) value = glm::dvec3(settings->number(more.knob));
-      knob.initial = value.x;
+      knob.initial = value.x, knob.minimum = range.minimum, knob.maximum = range.maximum;
     } else {
-      Range off_on = range;
-      if (range.choices.empty())
-        off_on.choices = {"off", "on"}, knob.choices = {"off", "on"}, knob.initial = choice_of(off_on, value);
-      if (set) choose(off_on, settings->integer(more.knob), value);
+      Range choices = range;
+      if (choices.choices.empty()) choices.choices = {"off", "on"};
+      if (set) choose(choices, settings->integer(more.knob), value);
+      knob.initial = choice_of(choices, value), knob.choices = {choices.choices.begin(), choices.choices.end()};
       knob.rebuilds = true;  // what is chosen is compiled into shaders
     }
     if (*more.knob) knobs.push_back(std::move(knob));
@@ -46,10 +40,14 @@ void visit(KnobVisitor& visitor, Scene& scene) {
 
 }  // namespace
 
-std::vector<Knob> scene_knobs(const Scene& scene) {
+std::vector<Knob> scene_knobs(const Scene& scene, bool metered) {
   KnobVisitor visitor;
   Scene copy = scene;
   visit(visitor, copy);
+  if (!metered)
+    std::erase_if(visitor.knobs, [](const Knob& knob) {
+      return knob.name == "exposure.mode" || knob.name == "exposure.compensation";
+    });
   return visitor.knobs;
 }
 

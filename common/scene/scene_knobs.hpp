@@ -7,8 +7,9 @@
 
 namespace welkin {
 
-// Knobs for what the scene contains (no mie.* without a Mie medium), each with the scene's value as default.
-std::vector<Knob> scene_knobs(const Scene& scene);
+// Knobs for what the scene contains (no mie.* without a Mie medium), each with the scene's value as default;
+// those of a light meter only where there is one.
+std::vector<Knob> scene_knobs(const Scene& scene, bool metered = true);
 
 // Writes the knobs that were set explicitly into the scene. Setting exposure.ev sets the exposure by hand.
 void apply_scene_knobs(const Settings& settings, Scene& scene);
