@@ -70,16 +70,14 @@ void choose(const Range& range, int chosen, T& value) {
 
 // Calls each(section) for a section, for one that may be absent, for many.
 template <typename T, typename Each>
-void each_of(T& one, const Each& each) {
-  each(one);
-}
-template <typename T, typename Each>
-void each_of(std::optional<T>& one, const Each& each) {
-  if (one) each(*one);
-}
-template <typename T, typename Each>
-void each_of(std::vector<T>& many, const Each& each) {
-  for (T& one : many) each(one);
+void each_of(T& member, const Each& each) {
+  if constexpr (requires { member.emplace_back(); }) {
+    std::for_each(member.begin(), member.end(), each);
+  } else if constexpr (requires { member.emplace(); }) {
+    if (member) each(*member);
+  } else {
+    each(member);
+  }
 }
 
 namespace ranges {

@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <string>
 #include <string_view>
 
@@ -13,11 +12,9 @@ namespace welkin {
 
 // Letters, digits, '_', '-' and '.': a name is typed on the command line and may become part of a file's name.
 inline bool plain_name(std::string_view text) {
-  const auto plain = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' ||
-           c == '.';
-  };
-  return !text.empty() && std::all_of(text.begin(), text.end(), plain);
+  return !text.empty() && text.find_first_not_of(
+                              "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
+                              "0123456789_-.") == text.npos;
 }
 
 inline std::string one_line(std::string_view text, size_t longest = 400) {

@@ -159,17 +159,15 @@ std::vector<const toml::table*> tables_of(const toml::table& root, const char* n
   return tables;
 }
 
+// The section that is read next: a member, or one more of it.
 template <typename T>
-T& begin_section(T& one) {
-  return one;
-}
-template <typename T>
-T& begin_section(std::optional<T>& one) {
-  return one.emplace();
-}
-template <typename T>
-T& begin_section(std::vector<T>& many) {
-  return many.emplace_back();
+auto& begin_section(T& member) {
+  if constexpr (is_list<T>)
+    return member.emplace_back();
+  else if constexpr (requires { member.emplace(); })
+    return member.emplace();
+  else
+    return member;
 }
 
 // Knobs of the scene are its fields, checked here; those of chapters are theirs to check, so only their spelling is.
