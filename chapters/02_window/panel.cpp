@@ -134,7 +134,7 @@ void Panel::swapchain_changed(const WindowSwapchain& swapchain) {
 bool Panel::wants_mouse() const { return ImGui::GetIO().WantCaptureMouse; }
 bool Panel::wants_keyboard() const { return ImGui::GetIO().WantTextInput; }
 
-void Panel::layout(const Chapter& chapter, const Scene& scene, Settings& settings, const gpu::Device& device,
+void Panel::layout(const Chapter& chapter, Scene& scene, Settings& settings, const gpu::Device& device,
                    const CameraPose& pose, PanelState& state) {
   ImGui_ImplVulkan_NewFrame();
   ImGui_ImplGlfw_NewFrame();

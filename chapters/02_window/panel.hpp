@@ -29,7 +29,6 @@ struct PanelState {
   float width = 0.0f, height = 0.0f;  // of the panel, in pixels; 0: not yet shown
   std::string message;                // shader error, "saved …": shown until the next
   std::vector<gpu::PassTime> times;   // of the last finished frame
-  double time_s = 0.0;                // scene time, moved by the slider
   std::vector<std::string> changed;   // knobs changed since the last frame
 };
 
@@ -45,8 +44,8 @@ class Panel {
   bool wants_mouse() const;
   bool wants_keyboard() const;
 
-  // Lays the panel out; may change settings (recording names in state.changed) and the time.
-  void layout(const Chapter& chapter, const Scene& scene, Settings& settings, const gpu::Device& device,
+  // Lays the panel out; may change settings (recording names in state.changed) and the scene's time.
+  void layout(const Chapter& chapter, Scene& scene, Settings& settings, const gpu::Device& device,
               const CameraPose& pose, PanelState& state);
   // Draws over the image, which is in COLOR_ATTACHMENT_OPTIMAL and ends in PRESENT_SRC.
   void record(VkCommandBuffer commands, uint32_t image_index);

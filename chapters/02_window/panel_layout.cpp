@@ -113,15 +113,16 @@ void choice_row(const char* name, const char* help, const std::string& now, std:
 }
 
 // The moment: a date that the scene gives, or angles; and hours from there.
-void time_rows(const Scene& scene, PanelState& state) {
+void time_rows(Scene& scene) {
   if (scene.sun.utc) {
     name_of_row("date, UTC", "the scene's moment and place, from which the sun's angles follow");
     ImGui::TextWrapped("%s", scene.sun.utc->c_str());
   }
   name_of_row(scene.sun.utc ? "hours later" : "time",
               "turns the sky about the planet's axis: 15 degrees an hour (--time, in seconds)");
-  float hours = static_cast<float>(state.time_s / 3600.0);
-  if (ImGui::SliderFloat("##time", &hours, -12.0f, 12.0f, "%+.2f h")) state.time_s = 3600.0 * hours;
+  if (!scene.sun.latitude_deg) return ImGui::TextDisabled("no latitude in [sun]");
+  float hours = static_cast<float>(scene.time_s / 3600.0);
+  if (ImGui::SliderFloat("##time", &hours, -12.0f, 12.0f, "%+.2f h")) scene.time_s = 3600.0 * hours;
 }
 
 // Of the scene rather than of a method: the scene's own values, and how a chapter with a light meter exposes it.
@@ -144,7 +145,7 @@ void scene_section(const PanelContext& shown, Settings& settings, PanelState& st
     for (const Knob& knob : settings.knobs())
       if (of_scene(shown.chapter, knob) && wanted(group(knob))) knob_row(knob, "", settings, state);
   };
-  time_rows(shown.scene, state);
+  time_rows(shown.scene);
   rows([](const std::string& name) { return name == "sun"; });
   rows([](const std::string& name) { return name == "exposure"; });
   if (ImGui::TreeNodeEx("air and ground", ImGuiTreeNodeFlags_NoTreePushOnOpen | ImGuiTreeNodeFlags_SpanAvailWidth))

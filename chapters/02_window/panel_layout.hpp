@@ -12,7 +12,7 @@ namespace welkin {
 // What the panel only reads.
 struct PanelContext {
   const Chapter& chapter;
-  const Scene& scene;
+  Scene& scene;
   const gpu::Device& device;
   const CameraPose& pose;
   std::span<const std::string> scenes;  // the shipped ones

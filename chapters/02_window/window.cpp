@@ -18,6 +18,7 @@
 #include "common/gpu/shader_file.hpp"
 #include "common/measure/metrics.hpp"
 #include "common/scene/one_line.hpp"
+#include "common/scene/path.hpp"
 #include "common/scene/scene_knobs.hpp"
 
 namespace welkin {
@@ -117,8 +118,9 @@ struct Loop {
   Panel panel;
   PanelState state;
   CameraPose pose;
-  bool cut = false;       // the next frame has nothing to do with the one before
-  gpu::CommandPool pool;  // for screenshots
+  bool cut = false;                // the next frame has nothing to do with the one before
+  std::optional<double> played_s;  // of the path that is shown, over and over until the camera is taken
+  gpu::CommandPool pool;           // for screenshots
 
   Loop(Session& s, Window& w, VkSurfaceKHR surface)
       : session(s),
@@ -131,8 +133,8 @@ struct Loop {
         panel(w.handle, s.instance, s.device, swapchain),
         pose(s.first_pose()),
         pool(gpu::create_command_pool(s.device)) {
-    state.time_s = s.options.time_s;
     state.view_now = s.scene.view(s.options.view).name;
+    if (!s.options.path.empty()) played_s = 0.0;
     use_targets();
   }
   ~Loop() { swapchain.wait_for_presentation(); }
@@ -164,13 +166,13 @@ struct Loop {
   void restore(const std::string& file) {
     Scene scene;
     Settings settings;
-    load_scene_and_settings(session.chapter, file, {}, scene, settings);  // throws before anything here changes
+    load_scene_and_settings(session.chapter, file, {}, {}, scene, settings);  // throws before anything here changes
     swapchain.wait_for_all_frames();
     session.scene = std::move(scene);
     session.settings = std::move(settings);
-    pose = pose_of(session.scene.view(""));
+    pose = pose_of(session.scene.view(""), session.scene.planet.ground_radius_km);
     state.view_now = session.scene.view("").name;
-    state.time_s = 0.0;
+    played_s.reset();  // a path of the scene before
     drawing.follow();
     cut = true;
   }
@@ -189,6 +191,16 @@ struct Loop {
     state.message = message;
     std::printf("%s\n", message.c_str());
     std::fflush(stdout);
+  }
+
+  void play(double seconds) {
+    if (!played_s) return;
+    const Path& path = session.scene.path(session.options.path);
+    const double length_s = path.time_s.back() - path.time_s.front();
+    played_s = std::fmod(*played_s + seconds, length_s);
+    const PathPoint point = point_on(session.scene, path, path.time_s.front() + *played_s);
+    session.scene.time_s = point.moment_s;
+    pose = pose_of(point.view, session.scene.planet.ground_radius_km);
   }
 
   std::string error_of_what_is_shown() const;
@@ -215,7 +227,7 @@ std::string Loop::error_of_what_is_shown() const {
                       {session.device, scene, session.settings, session.options.inject}};
   const std::unique_ptr<Program> method = still.make_program();
   Renderer renderer(still.context, still.chapter, *method, kSize);
-  renderer.draw(pose, state.time_s, still.options.seed, 0);
+  renderer.draw(pose, scene.time_s, still.options.seed, 0);
   const Image truth = draw_truth(still, pose, kSize, 1), again = draw_truth(still, pose, kSize, 2);
   const auto as_it_is = [](const glm::vec3& value) { return value; };
   return fmt::format(
@@ -252,6 +264,7 @@ void Loop::on_key(int key) {
     case GLFW_KEY_H: state.visible = !state.visible; break;
     case GLFW_KEY_F:
       state.flying = !state.flying;
+      played_s.reset();
       glfwSetInputMode(window.handle, GLFW_CURSOR, state.flying ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
       glfwGetCursorPos(window.handle, &window.mouse_x, &window.mouse_y);
       break;
@@ -274,7 +287,7 @@ void Loop::do_what_was_asked() {
   if (!state.scene_asked.empty()) window.dropped.push_back(std::exchange(state.scene_asked, {}));
   for (const std::string& file : std::exchange(window.dropped, {})) attempt([&] { restore(file); });
   if (const std::string view = std::exchange(state.view_asked, {}); !view.empty()) {
-    pose = pose_of(session.scene.view(view));
+    pose = pose_of(session.scene.view(view), session.scene.planet.ground_radius_km);
     state.view_now = view;
   }
 }
@@ -286,7 +299,7 @@ bool Loop::draw(uint32_t index, double seconds) {
   state.times = slot->timer.read();  // of this slot's earlier frame, finished now
   const VkExtent2D size = swapchain.size();
   const CameraRays camera =
-      camera_rays(pose, session.scene, state.time_s, {size.width, size.height}, session.options.seed, index);
+      camera_rays(pose, session.scene, session.scene.time_s, {size.width, size.height}, session.options.seed, index);
   state.changed.clear();
   panel.layout(session.chapter, session.scene, session.settings, session.device, pose, state);
   if (!state.changed.empty()) apply_scene_knobs(session.settings, session.scene);
@@ -329,6 +342,7 @@ Exit run_window(Session& session) {
     loop.do_what_was_asked();
     const double now = glfwGetTime(), seconds = now - last;
     move_camera(window, loop.panel, loop.state, loop.pose, seconds, session.scene.planet.ground_radius_km);
+    loop.play(seconds);
     last = now;
     if (!loop.draw(index, index == 0 ? 0.0 : seconds)) {
       window.resized = true;

@@ -60,8 +60,8 @@ std::string footer(const Chapter& chapter) {
   if (chapter.sky) {
     Scene scene;
     scene.media.push_back({.kind = "mie", .phase = Phase::cornette_shanks, .g = 0.8});
-    text += "\n" +
-            describe_knobs("Of the scene (default: what the scene says; here the neutral values):", scene_knobs(scene));
+    text += "\n" + describe_knobs("Of the scene (default: what the scene says; here the neutral values):",
+                                  scene_knobs(scene, has_meter(chapter)));
   }
   return text +
          "\nExit codes: 0 ok, 1 mismatch, 2 usage or bad input, 3 validation message, 77 skipped (no Vulkan device).";
@@ -87,7 +87,8 @@ bool parse_options(int argc, char** argv, const Chapter& chapter, Options& optio
       ->group("device");
   cli.add_flag("--headless", options.headless, "Draw without a window, into a file")->group("picture");
   cli.add_option("--size", size, "Picture size in pixels [1280x720]")->type_name("WxH")->group("picture");
-  cli.add_option("--frames", frames_text, "Frames to draw, then stop [headless 1; window: until closed]")
+  cli.add_option("--frames", frames_text,
+                 "Frames to draw, then stop [headless 1, of a path 24 a second; window: until closed]")
       ->type_name("N")
       ->group("picture");
   cli.add_option("--scene", options.scene,
@@ -95,12 +96,16 @@ bool parse_options(int argc, char** argv, const Chapter& chapter, Options& optio
       ->type_name("NAME|FILE")
       ->group("picture");
   cli.add_option("--view", options.view, "View of the scene [its first]")->type_name("NAME")->group("picture");
+  cli.add_option("--path", options.path, "Moving camera: a [[path]] of the scene, or the first of another scene file")
+      ->type_name("NAME|FILE")
+      ->group("picture");
   cli.add_option("--set", set, "Set a knob (repeatable)")
       ->type_name("key=value")
       ->allow_extra_args(false)
       ->group("picture");
   cli.add_option("--seed", seed_text, "Seed of everything random [1]")->type_name("N")->group("picture");
-  cli.add_option("--time", time_text, "Seconds after the scene's moment: the sun moves 15 degrees an hour [0]")
+  cli.add_option("--time", time_text,
+                 "Seconds after the moment of the sun's angles: it moves 15 degrees an hour [the scene's]")
       ->type_name("T")
       ->group("picture");
   cli.add_option("--output", options.output,
@@ -186,8 +191,11 @@ bool parse_options(int argc, char** argv, const Chapter& chapter, Options& optio
       fail("--supersample is for pictures: not with --list-gpus, --bench, --sweep, --probe or --golden");
   }
   if (cli.count("--seed") > 0) options.seed = whole("--seed", seed_text, 0, 2147483647);
-  if (cli.count("--time") > 0 && (!parse_number(time_text, options.time_s) || std::abs(options.time_s) > 1e9))
+  if (cli.count("--time") > 0 &&
+      (!parse_number(time_text, options.time_s.emplace()) || std::abs(*options.time_s) > 1e9))
     fail("--time {}: expected seconds from -1e9 to 1e9", time_text);
+  if (!options.path.empty() && !options.view.empty())
+    fail("--path {} beside --view {}: one of the two", options.path, options.view);
   if (cli.count("--validation") > 0)
     options.validation = parse_choice<gpu::Validation>(
         "--validation", validation,

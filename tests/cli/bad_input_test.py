@@ -132,7 +132,7 @@ class Files(WelkinCase):
                 (None, ["rays.csv"]), (b"", ["rays.csv"]), (RAYS.encode(), ["rays.csv"]), (os.urandom(300), ["rays.csv"]),
                 (b"altitude_km\n1\n", ["view_zenith_deg"]), ((RAYS + "0,0,0\n").encode(), ["rays.csv:2"]),
                 ((RAYS + "0,0,zero,0\n").encode(), ["rays.csv:2:5"]), ((RAYS + "0,nan,0,0\n").encode(), ["rays.csv:2:3"]),
-                ((RAYS + "-1,0,0,0\n").encode(), ["altitude_km", "0 to"]), ((RAYS + "0,181,0,0\n").encode(), ["view_zenith_deg", "0 to 180"])):
+                ((RAYS + "-1,0,0,0\n").encode(), ["altitude_km", "0 to"]), ((RAYS + "1000001,0,0,0\n").encode(), ["altitude_km", "0 to 1e+06"]), ((RAYS + "0,181,0,0\n").encode(), ["view_zenith_deg", "0 to 180"])):
             self.refuse_file("rays.csv", content, use, *words)
 
     def test_unwritable_output(self):

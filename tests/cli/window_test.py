@@ -8,7 +8,7 @@ import subprocess
 import time
 import unittest
 
-from welkin_case import BUILD, ROOT, WelkinCase, read_png, rgb
+from welkin_case import BUILD, ROOT, WelkinCase, carried, read_png, rgb
 
 TOOLS = ("Xvfb", "xdotool", "import", "convert")
 
@@ -125,6 +125,59 @@ class Window(WelkinCase):
         # The restored camera went through decimal text: the same to one level of 255.
         worst = max(abs(a - b) for x, y in zip(again, wanted) for a, b in zip(x, y))
         self.assertLessEqual(worst, 1)
+
+    def assert_restored(self, saved, *arguments):
+        """Drawn headless from the picture that was saved, it is the same to one level: its numbers went through text."""
+        wanted = read_png(saved)
+        self.run_chapter("05", "--headless", "--size", f"{wanted[0]}x{wanted[1]}", "--scene", saved, "--output", "again.png", *arguments)
+        pairs = zip(rgb(read_png(self.directory / "again.png")), rgb(wanted))
+        self.assertLessEqual(max(abs(a - b) for x, y in pairs for a, b in zip(x, y)), 1)
+
+    def test_flying_far_is_restored_with_the_sun_there(self):
+        scene = self.directory / "high.toml"
+        text = (ROOT / "chapters" / "scenes" / "orbit.toml").read_text()
+        scene.write_text(text.replace("zenith_deg = 100.0", "zenith_deg = 70.0"))
+        self.open("05_single_scattering", "--size", "160x90", "--scene", scene, "--view", "geostationary", "--set", "view.steps=8")
+        self.key("f")
+        self.xdotool("keydown", "--window", self.window, "d")
+        time.sleep(2.0)
+        self.xdotool("keyup", "--window", self.window, "d")
+        time.sleep(0.5)
+        saved = self.saved()
+        self.quit()
+        place = {key: float(value) for key, value in re.findall(r"^(east_km|north_km) = (\S+)$", carried(saved).split("[[view]]")[1], re.M)}
+        self.assertGreater(abs(place["east_km"]) + abs(place["north_km"]), 500.0, "it flew")
+        self.assert_restored(saved)
+
+    def test_the_slider_of_the_time_is_saved(self):
+        """The moment that is shown is the one that is restored: not that of --time, nor that of the scene."""
+        self.open("05_single_scattering", "--size", "480x640", "--scene", "sunset", "--set", "view.steps=4", "--time", "600")
+        for y in range(430, 20, -12):  # wherever the panel has it
+            self.xdotool("mousemove", "--window", self.window, "110", str(y), "sleep", "0.2", "mousedown", "1", "sleep", "0.2",
+                         "mousemove", "--window", self.window, "70", str(y), "sleep", "0.2", "mouseup", "1", "sleep", "0.2")
+            saved = self.saved()
+            moved = re.search(r"^time_s = (-\S+)$", carried(saved), re.M)
+            if moved:
+                break
+        self.quit()
+        self.assertTrue(moved, "a slider of the time was dragged")
+        self.assertLess(float(moved[1]), -3600.0)
+        self.assert_restored(saved)
+
+    def test_a_path_is_played_until_the_camera_is_taken(self):
+        scene = self.directory / "path.toml"
+        path = "[[path]]\nname = \"rise\"\nviews = [\"horizon\", \"airliner\"]\ntime_s = [0, 60]\nmoment_s = [0, 7200]\n"
+        scene.write_text((ROOT / "chapters" / "scenes" / "noon.toml").read_text() + path)
+        self.open("05_single_scattering", "--size", "160x90", "--scene", scene, "--path", "rise", "--set", "view.steps=8")
+        first, second = self.saved(), self.saved()
+        self.key("f")
+        third, fourth = self.saved(), self.saved()
+        self.quit()
+        times = [float(re.search(r"^time_s = (\S+)$", carried(saved), re.M)[1]) for saved in (first, second, third, fourth)]
+        self.assertLess(times[0], times[1])
+        self.assertLessEqual(times[1], times[2])
+        self.assertEqual(times[2], times[3])
+        self.assert_restored(second)
 
     def test_a_broken_shader_leaves_the_old_one_running(self):
         source = self.directory / "source"

@@ -61,7 +61,7 @@ struct World {
   std::string no_fault;
   app::Context context{test::device(), scene, settings, no_fault};
   app::Chapter chapter;
-  app::CameraPose pose = app::pose_of(scene.view("horizon"));
+  app::CameraPose pose = app::pose_of(scene.view("horizon"), scene.planet.ground_radius_km);
 };
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "common/scene/scene_knobs.hpp"
+
 namespace welkin::test {
 
 std::vector<Answer> evaluate_items(const std::vector<Item>& items) {
@@ -40,13 +42,14 @@ app::Effect given(const gpu::Buffer& from) {
 }  // namespace
 
 DisplayRig::DisplayRig(VkExtent2D size, const std::vector<std::pair<std::string, std::string>>& knobs, const Post& post)
-    : settings_(joined(exposure_knobs(), display_knobs())),
+    : settings_(joined(joined(exposure_knobs(), display_knobs()), scene_knobs(Scene{}))),
       context_{device(), scene_, settings_, inject_},
       pool_(gpu::create_command_pool(device())),
       commands_(gpu::allocate_commands(device(), pool_)),
       timer_(device()) {
   scene_.post = post;
   for (const auto& [name, text] : knobs) settings_.set(name, text);
+  apply_scene_knobs(settings_, scene_);
   constexpr VkImageUsageFlags kUsage =
       VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
   picture_ = gpu::create_image(device(), "picture", size, VK_FORMAT_R32G32B32A32_SFLOAT, kUsage);

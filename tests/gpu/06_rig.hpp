@@ -38,6 +38,7 @@ class DisplayRig {
   // Follows the settings, and says whether there is a meter.
   bool metered();
   Settings& settings() { return settings_; }
+  Post& post() { return scene_.post; }
   // Bytes the display allocated beside the two pictures.
   uint64_t bytes() const { return bytes_; }
 

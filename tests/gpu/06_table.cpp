@@ -36,11 +36,11 @@ std::pair<Image, Post> picture_of(const Shot& wanted, VkExtent2D size) {
   Scene scene;
   Settings settings;
   const std::string inject;
-  app::load_scene_and_settings(chapter, wanted.scene, {{"view.steps", "64"}}, scene, settings);
+  app::load_scene_and_settings(chapter, wanted.scene, {{"view.steps", "64"}}, {}, scene, settings);
   const app::Context context{device(), scene, settings, inject};
   app::Composition program(context, {air(), single_scattering()});
   app::Renderer renderer(context, chapter, program, size);
-  renderer.draw(app::pose_of(scene.view(wanted.view)), 0.0, 0, 0);
+  renderer.draw(app::pose_of(scene.view(wanted.view), scene.planet.ground_radius_km), 0.0, 0, 0);
   return {renderer.picture(), scene.post};
 }
 

@@ -58,7 +58,7 @@ struct Framed {
   uint32_t index = 0;
 
   explicit Framed(std::vector<app::Effect> effects)
-      : settings(app::knobs_of(effects, 11)), pose(app::pose_of(scene.views[0])) {
+      : settings(app::knobs_of(effects, 11)), pose(app::pose_of(scene.views[0], 6360.0)) {
     scene.terrain->size = 64;
     for (const char* quick :
          {"multiple_scattering.iterations=3", "multiple_scattering.directions=16", "transmittance.height=16",

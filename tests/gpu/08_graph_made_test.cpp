@@ -144,7 +144,7 @@ TEST_CASE("graph: a history holds last frame's, until a cut, a resize or a frame
   app::Composition program(context, {counter});
   const app::Chapter chapter;
   const auto count = [&](app::Renderer& renderer, uint32_t index, double altitude_km = 1.0) {
-    renderer.draw(app::pose_of({.altitude_km = altitude_km}), 0.0, 1, index);
+    renderer.draw(app::pose_of({.altitude_km = altitude_km}, 6360.0), 0.0, 1, index);
     return renderer.picture().pixels.front();
   };
   app::Renderer first(context, chapter, program, {16, 8});
@@ -204,7 +204,7 @@ TEST_CASE("08 hard: two hundred frames of resizes, dropped scenes and effects on
       std::make_unique<app::Renderer>(context, chapter, program, VkExtent2D{24, 16});
   const std::vector<std::pair<const char*, std::vector<const char*>>> switches{
       {"orders", {"0", "1"}},
-      {"exposure.mode", {"auto", "manual"}},
+      
       {"aerial.method", {"froxels", "march"}},
       {"tables", {"changed", "all"}},
       {"sky_view.method", {"auto", "table", "march"}},
@@ -237,13 +237,13 @@ TEST_CASE("08 hard: two hundred frames of resizes, dropped scenes and effects on
         else
           scene.sun.disc = !scene.sun.disc;
         break;
-      case 4: altitude_km = random.next() % 3 == 0 ? 400.0 : 0.5; break;
+      case 4: scene.post.manual = !scene.post.manual; altitude_km = random.next() % 3 == 0 ? 400.0 : 0.5; break;
       default: {
         const auto& [knob, values] = switches[random.next() % switches.size()];
         settings.set(knob, values[random.next() % values.size()]);
       }
     }
-    renderer->draw(app::pose_of({.altitude_km = altitude_km, .azimuth_deg = double(frame), .elevation_deg = -5.0}), 0.0,
+    renderer->draw(app::pose_of({.altitude_km = altitude_km, .azimuth_deg = double(frame), .elevation_deg = -5.0}, 6360.0), 0.0,
                    1, frame);
     if (frame % 10 == 9)
       for (const glm::vec4& pixel : renderer->picture().pixels) REQUIRE(std::isfinite(pixel.r + pixel.g + pixel.b));

@@ -212,7 +212,7 @@ struct World {
   std::string no_fault;
   app::Context context{device(), scene, settings, no_fault};
   app::Chapter chapter;
-  app::CameraPose pose = app::pose_of(scene.view("horizon"));
+  app::CameraPose pose = app::pose_of(scene.view("horizon"), scene.planet.ground_radius_km);
 };
 
 }  // namespace

@@ -155,7 +155,7 @@ TEST_CASE("10 hard: only what changed runs again") {
   app::Composition sky(context, sky_effects());
   const app::Chapter chapter;
   app::Renderer renderer(context, chapter, sky, {32, 18});
-  app::CameraPose pose = app::pose_of(scene.view(""));
+  app::CameraPose pose = app::pose_of(scene.view(""), scene.planet.ground_radius_km);
   const auto runs = [&](const char* pass) {
     const std::string text = sky.explain();
     const size_t at = text.find(fmt::format("  {:<20} ran in", pass));
@@ -174,15 +174,15 @@ TEST_CASE("10 hard: only what changed runs again") {
   scene.sun.zenith_deg += 1.0;
   frame(4);
   CHECK((runs("air") == 1 && runs("multiple scattering") == 1 && runs("sky view") == 2));
-  pose = app::pose_of({.altitude_km = 3.0});
+  pose = app::pose_of({.altitude_km = 3.0}, 6360.0);
   frame(5);
   CHECK(runs("sky view") == 3);
-  pose = app::pose_of({.altitude_km = 400.0});  // marched: the table rests, whatever changes
+  pose = app::pose_of({.altitude_km = 400.0}, 6360.0);  // marched: the table rests, whatever changes
   frame(6);
   scene.planet.ground_albedo.r = 0.5;
   frame(7);
   CHECK((runs("air") == 2 && runs("multiple scattering") == 2 && runs("sky view") == 3 && runs("sky") == 8));
-  pose = app::pose_of({.altitude_km = 3.0});  // and catches up when it is needed
+  pose = app::pose_of({.altitude_km = 3.0}, 6360.0);  // and catches up when it is needed
   frame(8);
   CHECK(runs("sky view") == 4);
 }

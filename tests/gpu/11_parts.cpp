@@ -91,7 +91,7 @@ Drawn::Drawn(const Scene& scene, VkExtent2D size, const std::vector<std::pair<st
 }
 
 Image Drawn::picture(const View& view, uint32_t index) {
-  renderer_->draw(app::pose_of(view), 0.0, 0, index);
+  renderer_->draw(app::pose_of(view, 6360.0), 0.0, 0, index);
   passes_.clear();
   for (const gpu::PassTime& pass : renderer_->pass_times()) passes_.push_back(pass.name);
   return renderer_->picture();

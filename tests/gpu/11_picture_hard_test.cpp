@@ -181,7 +181,7 @@ TEST_CASE("hard: depth of a flat map against the sphere") {
                                              VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Where::readback);
   for (const double altitude_km : {0.002, 1.0, 10.0}) {
     const View view{.altitude_km = altitude_km, .azimuth_deg = 30.0, .elevation_deg = -20.0, .fov_deg = 60.0};
-    const app::CameraPose pose = app::pose_of(view);
+    const app::CameraPose pose = app::pose_of(view, 6360.0);
     const CameraRays camera = app::camera_rays(pose, scene, 0.0, {64, 64}, 0, 0);
     gpu::run_once(device(), pool, [&](VkCommandBuffer commands) {
       timer.begin_frame(commands);
