@@ -10,6 +10,8 @@
 #ifndef WELKIN_SKY_VIEW_MAP_GLSL
 #define WELKIN_SKY_VIEW_MAP_GLSL
 
+#include "03_planet_and_rays/ray_sphere.glsl"
+
 // Where in the table a direction is: x and s in 0 … 1 and which half.
 struct SkyViewPlace {
   float across;
@@ -18,13 +20,6 @@ struct SkyViewPlace {
 };
 
 // [horizon]
-// The geometric horizon seen from altitude h: cosine and sine of its zenith angle, -sqrt(h (2R + h)) / r and R / r.
-vec2 horizon_at(float ground_radius_km, float altitude_km) {
-  float h = max(altitude_km, 0.0);
-  float r = ground_radius_km + h;
-  return vec2(-sqrt(h * (2.0 * ground_radius_km + h)) / r, ground_radius_km / r);
-}
-
 // tan(l/2) of the zenith (above) and of the nadir (below), l from the horizon. Neither form subtracts: cosine <= 0.
 float half_angle_range(vec2 horizon, bool below) {
   return below ? horizon.y / (1.0 - horizon.x) : (1.0 - horizon.x) / horizon.y;
