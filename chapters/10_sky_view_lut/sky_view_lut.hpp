@@ -18,11 +18,11 @@
 
 namespace welkin {
 
-// sky_view.method, .size, .format, .highest.
+// sky_view.method, .size, .steps, .format, .highest.
 std::vector<Knob> sky_view_knobs();
 
-// Pass "sky view": one march of chapter 09 per texel, when the air, the camera's altitude or the sun's height has
-// changed.
+// Pass "sky view": both marches of chapter 09 per texel, when the air, the camera's altitude or the sun's height has
+// changed; with one order, chapter 05's alone.
 class SkyViewLut {
  public:
   // scattering: nullptr where `orders` is 1; the table then holds single scattering.

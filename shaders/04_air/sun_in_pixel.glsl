@@ -19,8 +19,6 @@
 #include "03_planet_and_rays/ray_sphere.glsl"
 #include "04_air/phase.glsl"
 
-const float kQuarterTurn = 1.5707963267948966;
-
 // [sun_in_pixel]
 // The disc in the image plane, and a pixel's rectangle in half widths and half heights of it.
 struct SunInPixel {
@@ -75,10 +73,19 @@ SunInPixel sun_in_pixel(CameraRays camera, ivec2 pixel, vec3 view, float angular
   disc.high = (corner + half_pixel * 2.0 - middle) / size;
   disc.per_pixel = size.x * size.y / (4.0 * half_pixel.x * half_pixel.y);
   disc.mu_scale = cosine2 / q;
-  if (disc.low.y >= 1.0 || disc.high.y <= -1.0) return disc;
-  // Steps of a quarter radius: many where the whole disc is a point of the picture, one where it is large.
   vec2 wide = disc.high - disc.low;
-  disc.side = clamp(int(ceil(4.0 * max(wide.x, wide.y))), 1, 8);
+  // Only rows that meet both the circle and the rectangle.
+  disc.low.y = max(disc.low.y, -1.0);
+  disc.high.y = min(disc.high.y, 1.0);
+  vec2 moved = vec2(min(disc.shift * disc.low.y, disc.shift * disc.high.y), max(disc.shift * disc.low.y, disc.shift * disc.high.y));
+  float nearest_u = max(max(disc.low.x - moved.y, moved.x - disc.high.x), 0.0);
+  if (disc.low.y >= disc.high.y || nearest_u >= 1.0) return disc;
+  float tallest = sqrt((1.0 - nearest_u) * (1.0 + nearest_u));
+  disc.low.y = max(disc.low.y, -tallest);
+  disc.high.y = min(disc.high.y, tallest);
+  if (disc.low.y >= disc.high.y) return disc;
+  // Steps of a sixth of the radius: many where the whole disc is a point of the picture, two where it is large.
+  disc.side = clamp(int(ceil(6.0 * max(wide.x, wide.y))), 2, 12);
   return disc;
 }
 // [/sun_in_pixel]
@@ -99,8 +106,8 @@ SunNode sun_node(SunInPixel disc, vec2 horizon, int i) {
   node.view = vec3(0.0, 0.0, 1.0);
   node.share = 0.0;
   node.mu = 0.0;
-  float phi_0 = angle_of_sine(clamp(disc.low.y, -1.0, 1.0));
-  float phi_step = (angle_of_sine(clamp(disc.high.y, -1.0, 1.0)) - phi_0) / float(disc.side);
+  float phi_0 = angle_of_sine(disc.low.y);
+  float phi_step = (angle_of_sine(disc.high.y) - phi_0) / float(disc.side);
   float phi = phi_0 + phi_step * (float(i / disc.side) + 0.5);
   float v = sin(phi);
   float row = max(cos(phi), 1.0e-6);  // half its width
