@@ -11,7 +11,8 @@
 //   c = sin a cos a / sqrt(q (cos^2 a - x^2)).
 // In (u, v), a row's share and a height's, it is the unit circle, and mu_s, the cosine at the sun's surface, is exactly
 //   mu_s^2 = (1 - u^2 - v^2) cos^2 a / (q |P|^2),      P the point of the plane, |P|^2 = 1 + X^2 + Y^2.
-// With v = sin phi and u = cos phi sin theta light that fades towards the limb has no edge left: equal steps in phi and theta.
+// Steps are equal in p and t with v = p sqrt(2 - p^2), u = w t sqrt(2 - t^2), w = sqrt(1 - v^2) = 1 - p^2 half a row's width:
+// then sqrt(1 - u^2 - v^2) = (1 - p^2)(1 - t^2), and light that fades towards the limb has no edge left.
 #ifndef WELKIN_SUN_IN_PIXEL_GLSL
 #define WELKIN_SUN_IN_PIXEL_GLSL
 
@@ -30,7 +31,7 @@ struct SunInPixel {
   vec2 low;       // (u, v) of the rectangle's corners
   vec2 high;
   float per_pixel;  // area of (u, v) in pixels
-  float mu_scale;   // cos^2 a / q
+  float mu_scale;   // cos a / sqrt(q)
 };
 
 // sin^2 as a series (next term 3e-3 a^8): Vulkan lets sin() be wrong by 5e-4 in absolute terms, and a real GPU's is off
@@ -72,7 +73,7 @@ SunInPixel sun_in_pixel(CameraRays camera, ivec2 pixel, vec3 view, float angular
   disc.low = (corner - middle) / size;
   disc.high = (corner + half_pixel * 2.0 - middle) / size;
   disc.per_pixel = size.x * size.y / (4.0 * half_pixel.x * half_pixel.y);
-  disc.mu_scale = cosine2 / q;
+  disc.mu_scale = sqrt(cosine2 / q);
   vec2 wide = disc.high - disc.low;
   // Only rows that meet both the circle and the rectangle.
   disc.low.y = max(disc.low.y, -1.0);
@@ -97,37 +98,53 @@ struct SunNode {
   float mu;     // cosine at the sun's surface there
 };
 
-// asin of -1 ... 1: acos and asin of some drivers are good to 2e-4 only, atan to 3e-6.
-float angle_of_sine(float sine) { return atan(sine, sqrt((1.0 - sine) * (1.0 + sine))); }
+// p of v = p sqrt(2 - p^2), and how v grows with it.
+float to_steps(float v) { return v / sqrt(1.0 + sqrt(max(1.0 - v * v, 0.0))); }
+float from_steps(float p) { return p * sqrt(2.0 - p * p); }
+float step_width(float p) { return 2.0 * (1.0 - p * p) / sqrt(2.0 - p * p); }
 
-// Node i of side^2. horizon: cosine and sine of its zenith angle, horizon_at(); what lies below it is not seen.
-SunNode sun_node(SunInPixel disc, vec2 horizon, int i) {
+// A row of nodes: those at one v.
+struct SunRow {
+  float v;
+  float height;     // in v
+  float half_width; // w
+  float t_begin;
+  float t_step;
+};
+
+SunRow sun_row(SunInPixel disc, int i) {
+  float begin = to_steps(disc.low.y);
+  float p_step = (to_steps(disc.high.y) - begin) / float(disc.side);
+  float p = begin + p_step * (float(i) + 0.5);
+  SunRow row;
+  row.v = from_steps(p);
+  row.height = step_width(p) * p_step;
+  row.half_width = max(1.0 - p * p, 1.0e-6);
+  row.t_begin = to_steps(clamp((disc.low.x - disc.shift * row.v) / row.half_width, -1.0, 1.0));
+  row.t_step = (to_steps(clamp((disc.high.x - disc.shift * row.v) / row.half_width, -1.0, 1.0)) - row.t_begin) / float(disc.side);
+  return row;
+}
+
+// Node j of a row. horizon: cosine and sine of its zenith angle, horizon_at(); what lies below it is not seen.
+SunNode sun_node(SunInPixel disc, SunRow row, vec2 horizon, int j) {
+  float t = row.t_begin + row.t_step * (float(j) + 0.5);
+  float across = from_steps(t);
+  float width = row.half_width * step_width(t) * row.t_step;
+  float from_limb = row.half_width * (1.0 - t * t);  // sqrt(1 - u^2 - v^2)
+  vec3 point = disc.centre + disc.along_u * (row.half_width * across) + disc.along_v * row.v;
+  float nearness = 1.0 / length(point);
   SunNode node;
-  node.view = vec3(0.0, 0.0, 1.0);
-  node.share = 0.0;
-  node.mu = 0.0;
-  float phi_0 = angle_of_sine(disc.low.y);
-  float phi_step = (angle_of_sine(disc.high.y) - phi_0) / float(disc.side);
-  float phi = phi_0 + phi_step * (float(i / disc.side) + 0.5);
-  float v = sin(phi);
-  float row = max(cos(phi), 1.0e-6);  // half its width
-  float theta_0 = angle_of_sine(clamp((disc.low.x - disc.shift * v) / row, -1.0, 1.0));
-  float theta_step = (angle_of_sine(clamp((disc.high.x - disc.shift * v) / row, -1.0, 1.0)) - theta_0) / float(disc.side);
-  if (theta_step <= 0.0) return node;
-  float theta = theta_0 + theta_step * (float(i % disc.side) + 0.5);
-  vec3 point = disc.centre + disc.along_u * (row * sin(theta)) + disc.along_v * v;
-  float distance = length(point);
-  node.view = point / distance;
-  float from_limb = row * cos(theta);  // sqrt(1 - u^2 - v^2)
-  node.mu = min(from_limb * sqrt(disc.mu_scale) / distance, 1.0);
-  node.share = from_limb * row * phi_step * theta_step * disc.per_pixel;
+  node.view = point * nearness;
+  node.mu = min(from_limb * disc.mu_scale * nearness, 1.0);
+  node.share = max(width, 0.0) * row.height * disc.per_pixel;
   // The horizon: the part of the node's piece above it, and its middle. up: the way away from the horizon.
   float sine = max(sqrt(node.view.x * node.view.x + node.view.y * node.view.y), 1.0e-20);
-  vec3 up = vec3(node.view.x * (-horizon.x / sine), node.view.y * (-horizon.x / sine), horizon.y);
+  float lean = -horizon.x / sine;
+  vec3 up = vec3(node.view.x * lean, node.view.y * lean, horizon.y);
   float above = dot(up, node.view);
-  vec3 by_theta = disc.along_u * (from_limb * theta_step);
-  vec3 by_phi = (disc.along_v * row - disc.along_u * (v * sin(theta))) * phi_step;
-  float height = (abs(dot(up, by_theta)) + abs(dot(up, by_phi))) / distance;
+  // A piece is as wide as its row and leans with the edges of those above and below: u = w across, dw / dv = -v / w.
+  float lean_u = -row.v * across / row.half_width;
+  float height = (abs(dot(up, disc.along_u)) * width + abs(dot(up, disc.along_v + disc.along_u * lean_u)) * row.height) * nearness;
   float seen = clamp(above + 0.5 * height, 0.0, height);
   if (seen < height) {
     node.share *= seen / height;

@@ -27,13 +27,15 @@ vec3 sun_disc_light(Atmosphere atmosphere, CameraRays camera, ivec2 pixel, vec3 
   SunInPixel disc = sun_in_pixel(camera, pixel, view, atmosphere.sun_angular_radius);
   if (disc.side == 0) return light;
   vec2 horizon = horizon_at(atmosphere.ground_radius_km, camera.altitude_km);
-  for (int i = 0; i < disc.side * disc.side; i++) {
-    SunNode node = sun_node(disc, horizon, i);
-    if (node.share <= 0.0) continue;
-    vec3 radiance = sun_disc_radiance(atmosphere.solar_irradiance, atmosphere.sun_angular_radius, node.mu);
-    AirRay ray = enter_air(atmosphere, camera.altitude_km, node.view, camera.sun);
-    if (ray.hits_air) radiance *= exp(optical_depth_and_to_sun(atmosphere, vec3(0.0, 0.0, 0.0), ray.altitude_km, ray.mu) * -1.0);
-    light += radiance * node.share;
+  for (int i = 0; i < disc.side; i++) {
+    SunRow row = sun_row(disc, i);
+    for (int j = 0; j < disc.side; j++) {
+      SunNode node = sun_node(disc, row, horizon, j);
+      vec3 radiance = sun_disc_radiance(atmosphere.solar_irradiance, atmosphere.sun_angular_radius, node.mu);
+      AirRay ray = enter_air(atmosphere, camera.altitude_km, node.view, camera.sun);
+      if (ray.hits_air) radiance *= exp(optical_depth_and_to_sun(atmosphere, vec3(0.0, 0.0, 0.0), ray.altitude_km, ray.mu) * -1.0);
+      light += radiance * node.share;
+    }
   }
   return light;
 }
