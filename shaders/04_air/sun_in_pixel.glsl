@@ -85,8 +85,8 @@ SunInPixel sun_in_pixel(CameraRays camera, ivec2 pixel, vec3 view, float angular
   disc.low.y = max(disc.low.y, -tallest);
   disc.high.y = min(disc.high.y, tallest);
   if (disc.low.y >= disc.high.y) return disc;
-  // Steps of a sixth of the radius: many where the whole disc is a point of the picture, two where it is large.
-  disc.side = clamp(int(ceil(6.0 * max(wide.x, wide.y))), 2, 12);
+  // Steps of an eighth of the radius: many where the whole disc is a point of the picture, two where it is large.
+  disc.side = clamp(int(ceil(8.0 * max(wide.x, wide.y))), 2, 12);
   return disc;
 }
 // [/sun_in_pixel]
