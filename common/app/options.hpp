@@ -43,7 +43,7 @@ struct Options {
   std::string inject;
 };
 
-// Parses argv for a chapter. Prints --help or --version and returns false if that is all that was asked.
+// Parses argv for a chapter. Prints --help and returns false if that is all that was asked.
 // Throws Error (Exit::usage) with one line for anything it does not accept.
 bool parse_options(int argc, char** argv, const Chapter& chapter, Options& options);
 

@@ -60,6 +60,29 @@ TEST_CASE("10 hard: the horizon is a line, not a band") {
   }
 }
 
+// Half a metre up the horizon is 2.5 km away, and 0.02 degrees below it the ground is 500 m away: with the sun 1 degree
+// up nearly all the light there is the air's before it. Rows that the dip does not know take the middle between both.
+TEST_CASE("10 hard: just under the horizon the air before the ground is as long as it is") {
+  std::vector<app::ProbeRay> rays;
+  for (const double altitude : {0.0005, 0.002, 0.1, 1.0, 10.0})
+    for (const double sun : {60.0, 85.0, 89.0, 91.0, 94.0})
+      for (const double azimuth : {0.0, 3.0, 40.0, 180.0})
+        for (const double below :
+             {0.0003, 0.001, 0.003, 0.006, 0.01, 0.014, 0.02, 0.03, 0.06, 0.13, 0.3, 1.0, 3.0, 9.0, 30.0})
+          rays.push_back(
+              {altitude, 180.0 - std::asin(6360.0 / (6360.0 + altitude)) * 57.29577951308232 + below, sun, azimuth});
+  const std::vector<app::ProbeResult> table = view_of(orders_scene("earth"), kTable, rays),
+                                      march = view_of(orders_scene("earth"), {{"sky_view.method", "march"}}, rays);
+  double worst[5] = {};
+  for (size_t i = 0; i < rays.size(); ++i) {
+    const double error = relative(table[i].radiance.g, march[i].radiance.g);
+    worst[i / 300] = std::max(worst[i / 300], error);
+  }
+  CAPTURE(worst[0], worst[1], worst[2], worst[3], worst[4]);
+  CHECK(std::max({worst[0], worst[1], worst[2], worst[4]}) < 0.01);
+  CHECK(worst[3] < 0.05);  // a kilometre up with the sun 1 degree down: the shadow's edge is on the ground just there
+}
+
 // A seam would be a change of slope larger than between any other neighbours.
 TEST_CASE("10 hard: no seam at the sun's azimuth, opposite it, or at the zenith") {
   constexpr int kReach = 20, kLine = 2 * kReach + 1;  // rays of a line, the seam in its middle
