@@ -2,7 +2,6 @@
 #include "chapters/11_aerial_perspective/aerial_sky.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <optional>
 
 #include "chapters/10_sky_view_lut/sky.hpp"
@@ -85,12 +84,10 @@ void AerialSky::make_compose() {
   Frames& frames = *frames_;
   const Relief& relief = *frames.relief;
   gpu::Specialization constants = frames.inputs->variant();
-  constants.insert(constants.end(), {static_cast<uint32_t>(context_.settings.integer("aerial.march_slices")),
-                                     context_.scene.terrain->signs_azimuth_deg.has_value(),
-                                     std::bit_cast<uint32_t>(static_cast<float>(kNear_km))});
+  constants.push_back(static_cast<uint32_t>(context_.settings.integer("aerial.march_slices")));
   std::vector<gpu::Binding> bindings = frames.inputs->bindings();
   if (frames.aerial) bindings.insert(bindings.end(), {{3, kSampled}, {4, kSampled}});
-  bindings.insert(bindings.end(), {{5, kSampled}, {6, kSampled}, {7, kSampled}, {8, kImage}, {9, kImage}});
+  bindings.insert(bindings.end(), {{5, kImage}, {6, kSampled}, {7, kSampled}, {8, kImage}, {9, kImage}});
   frames.compose = gpu::create_compute_pipeline(
       device, frames.aerial ? "11_aerial_perspective/compose.comp" : "11_aerial_perspective/compose_march.comp",
       bindings, sizeof(AerialPush), constants);
@@ -116,7 +113,7 @@ void AerialSky::set_target(const gpu::Image& target) {
                                          VK_IMAGE_USAGE_STORAGE_BIT);
     frames.sky.set_target(frames.sky_image, {});
     frames.relief->set_size(target.size);
-    gpu::write_sampled_image(context_.device, frames.set, 5, frames.relief->depth(), frames.relief->depth_sampler());
+    gpu::write_storage_image(context_.device, frames.set, 5, frames.relief->distance());
     gpu::write_storage_image(context_.device, frames.set, 8, frames.sky_image);
     gpu::write_storage_image(context_.device, frames.set, 9, target);
     if (frames.compiled)
@@ -129,7 +126,7 @@ void AerialSky::set_target(const gpu::Image& target) {
     std::vector<graph::Access> accesses = frames.inputs->accesses();
     if (frames.aerial)
       for (const graph::Access& access : frames.aerial->reads()) accesses.push_back(access);
-    accesses.push_back({frames.relief->depth_resource(), gpu::kSampledRead});
+    accesses.push_back({frames.relief->distance_resource(), gpu::kComputeRead});
     accesses.push_back({frames.sky.resource(), gpu::kComputeRead});
     accesses.push_back({frames.picture, gpu::kComputeWrite});
     frames.graph.add({.name = "compose",

@@ -1,8 +1,9 @@
-// The terrain on the device: its maps, the pass that finds its shadows, and the pass that draws its mesh into a depth
-// image.
+// The terrain on the device: its maps, the pass that finds its shadows, and the pass that finds where each pixel's ray
+// meets it.
 //
-// Nothing but depth is drawn: from it the compose pass knows where a pixel lies, and all else is a look-up in the maps.
-// The mesh is rings of square cells around the camera, each ring with cells twice as large as the one inside it.
+// The height map is walked over as it is, with a tree of maxima to pass what a ray flies over: there is no mesh that
+// would be a little higher or lower than the map. From the distance the compose pass knows where a pixel lies, and all
+// else is a look-up in the maps.
 #pragma once
 
 #include <vector>
@@ -12,9 +13,7 @@
 
 namespace welkin {
 
-inline constexpr double kNear_km = 1e-4;  // of the reversed depth
-
-std::vector<Knob> terrain_knobs();  // terrain.cells, terrain.shadow_size
+std::vector<Knob> terrain_knobs();  // terrain.shadow_size
 
 // Where a frame's camera stands, and its frame of east, north and up; km, global frame. Not below `least_km` above
 // ground.
@@ -40,7 +39,7 @@ class Relief {
  public:
   Relief(const app::Context& context, graph::Graph& graph);  // of context.scene.terrain, which there must be
   Relief(const Relief&) = delete;
-  void set_size(VkExtent2D size);  // of the picture: makes the depth image
+  void set_size(VkExtent2D size);  // of the picture: makes the image of distances
   void rebuild();
 
   bool has_shadows() const { return context_.scene.terrain->shadows; }
@@ -48,36 +47,28 @@ class Relief {
   const gpu::Image& slopes() const { return slopes_; }
   const gpu::Image& cover() const { return cover_; }
   const gpu::Image& shadows() const { return has_shadows() ? shadows_ : heights_; }
-  const gpu::Image& depth() const { return depth_; }
+  const gpu::Image& distance() const { return distance_; }  // km along each pixel's ray, 0: no terrain
   VkSampler sampler() const { return sampler_; }
-  VkSampler depth_sampler() const { return depth_sampler_; }
-  graph::Resource depth_resource() const { return depth_resource_; }
+  graph::Resource distance_resource() const { return distance_resource_; }
   graph::Resource shadow_resource() const { return shadow_resource_; }  // only with shadows
 
  private:
-  void make_mesh(int cells);
-  void make_mesh_pipeline(int cells);
   void make_shadow_image();
   glm::dvec3 sun_of(const app::Frame& frame) const;
   void draw_shadows(const app::Frame& frame);
-  void draw_mesh(const app::Frame& frame) const;
+  void find_distances(const app::Frame& frame) const;
 
   const app::Context context_;
   graph::Graph& graph_;
   TerrainMap map_;
-  gpu::Sampler sampler_, depth_sampler_;
-  gpu::Image heights_, slopes_, cover_, shadows_, depth_;
-  graph::Resource depth_resource_ = 0, shadow_resource_ = 0;
+  HeightMaxima maxima_;  // its size; what it held is on the device
+  gpu::Sampler sampler_;
+  gpu::Image heights_, height_maxima_, slopes_, cover_, shadows_, distance_;
+  graph::Resource distance_resource_ = 0, shadow_resource_ = 0;
   glm::dvec3 shadowed_from_{0.0};  // the sun the shadow map was made for
   Watch watch_;
-  int cells_ = 0;
-  gpu::Buffer indices_;
-  uint32_t whole_count_ = 0, ring_count_ = 0;
-  gpu::SetLayout mesh_set_layout_;
-  gpu::PipelineLayout mesh_layout_;
-  gpu::PipelineHandle mesh_pipeline_;
-  gpu::DescriptorSet mesh_set_, shadow_set_;
-  gpu::ComputePipeline shadow_pipeline_;
+  gpu::DescriptorSet distance_set_, shadow_set_;
+  gpu::ComputePipeline distance_pipeline_, shadow_pipeline_;
 };
 
 // The camera of a frame, lifted out of the ground. Straight up: directions stay what they are.

@@ -165,6 +165,36 @@ TerrainMap make_terrain_map(const Terrain& terrain) {
   return map;
 }
 
+// [height_maxima]
+HeightMaxima height_maxima(const TerrainMap& map) {
+  const int n = map.size;
+  HeightMaxima maxima{.levels = 1};
+  while ((8 << maxima.levels) < n + 1) ++maxima.levels;          // about eight nodes a side remain
+  const int side = ((n >> maxima.levels) + 1) << maxima.levels;  // in patches: whole nodes of every level
+  maxima.width = side / 2;
+  maxima.rows = side - (side >> maxima.levels);
+  maxima.highest_km.assign(static_cast<size_t>(maxima.width) * maxima.rows, 0.0f);
+  const auto row_of = [side](int level) { return side - (side >> (level - 1)); };
+  const auto at = [&](int level, int i, int j) -> float& {
+    return maxima.highest_km[static_cast<size_t>(row_of(level) + j) * maxima.width + i];
+  };
+  // Two patches a side have three samples a side: 2 i - 1 to 2 i + 1.
+  for (int j = 0; j < n + 2; ++j)
+    for (int i = 0; i < n + 2; ++i) {
+      const float height =
+          map.height_km[static_cast<size_t>(std::clamp(j - 1, 0, n - 1)) * n + std::clamp(i - 1, 0, n - 1)];
+      for (const int y : {(j - 1) / 2, j / 2})
+        for (const int x : {(i - 1) / 2, i / 2})
+          if (x < side / 2 && y < side / 2) at(1, x, y) = std::max(at(1, x, y), height);
+    }
+  for (int level = 2; level <= maxima.levels; ++level)
+    for (int j = 0; j < side >> (level - 1); ++j)
+      for (int i = 0; i < side >> (level - 1); ++i)
+        at(level, i / 2, j / 2) = std::max(at(level, i / 2, j / 2), at(level - 1, i, j));
+  return maxima;
+}
+// [/height_maxima]
+
 double height_at(const TerrainMap& map, double x_km, double y_km) {
   if (std::max(std::abs(x_km), std::abs(y_km)) > 0.5 * map.extent_km) return 0.0;
   const double column = std::clamp((x_km / map.extent_km + 0.5) * map.size - 0.5, 0.0, map.size - 1.0);

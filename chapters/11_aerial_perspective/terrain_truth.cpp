@@ -31,7 +31,7 @@ class TerrainTruth : public app::Program {
     for (gpu::Image* image : {&normals_, &albedos_})
       *image = gpu::create_image(context_.device, "first surfaces", target.size, VK_FORMAT_R32G32B32A32_SFLOAT,
                                  VK_IMAGE_USAGE_STORAGE_BIT);
-    gpu::write_sampled_image(context_.device, set_, 0, relief_.depth(), relief_.depth_sampler());
+    gpu::write_storage_image(context_.device, set_, 0, relief_.distance());
     gpu::write_sampled_image(context_.device, set_, 1, relief_.slopes(), relief_.sampler());
     gpu::write_sampled_image(context_.device, set_, 2, relief_.cover(), relief_.sampler());
     gpu::write_storage_image(context_.device, set_, 3, normals_);
@@ -76,7 +76,7 @@ class TerrainTruth : public app::Program {
     normals_resource_ = graph_.add("normals and distances", normals_, traced);
     albedos_resource_ = graph_.add("albedos", albedos_, traced);
     graph_.add({.name = "surfaces",
-                .accesses = {{relief_.depth_resource(), gpu::kSampledRead},
+                .accesses = {{relief_.distance_resource(), gpu::kComputeRead},
                              {normals_resource_, gpu::kComputeWrite},
                              {albedos_resource_, gpu::kComputeWrite}},
                 .record = [this](const app::Frame& frame) { draw_surfaces(frame); },
@@ -99,11 +99,11 @@ class TerrainTruth : public app::Program {
     const Scene& scene = context_.scene;
     const std::optional<double>& signs = scene.terrain->signs_azimuth_deg;
     const auto bits = [](double value) { return std::bit_cast<uint32_t>(static_cast<float>(value)); };
-    pipeline_ = gpu::create_compute_pipeline(
-        context_.device, "11_aerial_perspective/surfaces.comp",
-        {{0, kSampled}, {1, kSampled}, {2, kSampled}, {3, kImage}, {4, kImage}}, sizeof(SurfacesPush),
-        {signs.has_value(), bits(signs ? glm::radians(*signs) : 0.0), bits(kNear_km), bits(scene.terrain->extent_km),
-         bits(scene.planet.ground_radius_km)});
+    pipeline_ = gpu::create_compute_pipeline(context_.device, "11_aerial_perspective/surfaces.comp",
+                                             {{0, kImage}, {1, kSampled}, {2, kSampled}, {3, kImage}, {4, kImage}},
+                                             sizeof(SurfacesPush),
+                                             {bits(signs ? glm::radians(*signs) : -1e3), bits(scene.terrain->extent_km),
+                                              bits(scene.planet.ground_radius_km)});
     if (set_.handle == VK_NULL_HANDLE)
       set_ = gpu::create_descriptor_set(context_.device, pipeline_.set_layout, pipeline_.bindings);
   }

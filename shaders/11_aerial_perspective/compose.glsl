@@ -2,22 +2,22 @@
 // Included by compose.comp (FROXELS 1) and compose_march.comp (0: a march per pixel instead, and nothing to bind for them).
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "11_aerial_perspective/block.glsl"
-#include "11_aerial_perspective/ground.glsl"
-#include "11_aerial_perspective/signs.glsl"
 
 layout(constant_id = 22) const int MARCH_SLICES = 64;
-layout(constant_id = 23) const bool HAS_SIGNS = true;
-layout(constant_id = 24) const float NEAR_KM = 1.0e-4;
 
 #if FROXELS
 layout(binding = 3) uniform sampler3D glows;
 layout(binding = 4) uniform sampler3D extinctions;
 #endif
-layout(binding = 5) uniform sampler2D depth_map;
+layout(binding = 5, r32f) uniform readonly image2D terrain_distance;
 layout(binding = 6) uniform sampler2D slope_map;
 layout(binding = 7) uniform sampler2D cover_map;
 layout(binding = 8, rgba32f) uniform readonly image2D sky;
 layout(binding = 9, rgba32f) uniform writeonly image2D target;
+
+vec2 slope_at(vec2 uv) { return textureLod(slope_map, uv, 0.0).rg; }
+vec4 cover_at(vec2 uv) { return textureLod(cover_map, uv, 0.0); }
+#include "11_aerial_perspective/surface.glsl"
 
 #if FROXELS
 // [froxel_light]
@@ -57,43 +57,23 @@ void main() {
   const vec3 view = camera_direction(camera, pixel);
   const vec3 direction = to_global(view), sun = to_global(camera.sun);
 
-  const float depth = texelFetch(depth_map, pixel, 0).r;
-  float t_km = depth > 0.0 ? distance_from_depth(depth, NEAR_KM, dot(view, normalize(camera.forward))) : 1.0e9;
-  bool seen = depth > 0.0;
-  float paint = -1.0;
-  vec3 normal = vec3(0.0);
-  if (HAS_SIGNS) {
-    for (int k = 0; k < kSigns; ++k) {
-      const SignHit hit = meet_sign(k, air.ground_radius_km, north.w, position.xyz, direction);
-      if (hit.t_km < 0.0 || hit.t_km >= t_km) continue;
-      t_km = hit.t_km, paint = hit.paint, normal = hit.normal, seen = true;
-    }
-  }
-  if (!seen) {
+  const float terrain_km = imageLoad(terrain_distance, pixel).r;
+  const Surface surface = first_surface(air.ground_radius_km, position.w, air.ground_albedo, position.xyz, direction, terrain_km,
+                                        north.w, 1.0 / float(camera.size.y));
+  if (surface.t_km <= 0.0) {
     imageStore(target, pixel, imageLoad(sky, pixel));
     return;
   }
 
-  const vec3 point = position.xyz + direction * t_km;
-  const vec2 place = place_below(air.ground_radius_km, point);
-  const vec3 up = up_at(air.ground_radius_km, place);
-  const float altitude = max(altitude_of(air.ground_radius_km, point), 0.0);
-  vec3 albedo = vec3(paint);
-  if (paint < 0.0) {
-    const vec2 uv = map_uv(place, position.w);
-    const Ground ground = ground_at(textureLod(slope_map, uv, 0.0).rg, textureLod(cover_map, uv, 0.0), air.ground_albedo, place, up, t_km / float(camera.size.y));
-    albedo = ground.albedo, normal = ground.normal;
-  } else if (dot(normal, direction) > 0.0) {
-    normal = -normal;
-  }
-  const float mu_sun = dot(sun, up);
+  const float altitude = max(altitude_of(air.ground_radius_km, position.xyz + direction * surface.t_km), 0.0);
+  const float mu_sun = dot(sun, surface.up);
   const MethodAir method = method_air(air, MS_METHOD);
-  const float seen_sun = HAS_SHADOWS ? sun_over(place, altitude) : 1.0;
+  const float seen_sun = surface.is_terrain ? sun_on_ground(surface.place_km) : sun_over(surface.place_km, altitude);
   const vec3 beam = sun_through_air(method.air, altitude, mu_sun) * seen_sun;
   const vec3 from_sky = HIGHER_ORDERS ? sky_irradiance(air, altitude, mu_sun) : vec3(0.0);
-  const vec3 lit = surface_light(albedo, air.ground_albedo, normal, up, sun, beam, from_sky) * air.solar_irradiance;
+  const vec3 lit = surface_light(surface.albedo, air.ground_albedo, surface.normal, surface.up, sun, beam, from_sky) * air.solar_irradiance;
 
-  const RayLight before = air_before(air, (vec2(pixel) + 0.5) / vec2(camera.size), view, t_km);
+  const RayLight before = air_before(air, (vec2(pixel) + 0.5) / vec2(camera.size), view, surface.t_km);
   imageStore(target, pixel, vec4(before.radiance + before.transmittance * lit, 1.0));
 }
 // [/compose]
