@@ -63,13 +63,6 @@ float steps_to_border(HeightField field, vec2 grid, vec2 rate, ivec2 node, int l
   return max(min(across, down), 0.0);
 }
 
-// The level for the next node: one up where a node's parent was left with it, since that one may be passed as a whole.
-int level_after(HeightField field, ivec2 node, vec2 next_grid, int level) {
-  ivec2 next = ivec2(int(next_grid.x) >> level, int(next_grid.y) >> level);
-  bool parent_left = (next.x >> 1) != (node.x >> 1) || (next.y >> 1) != (node.y >> 1);
-  return parent_left ? min(level + 1, field.levels) : level;
-}
-
 // [first_hit]
 // Distance at which a ray first meets the terrain; below 0 if it does not, be it that the sphere outside of the map is in the
 // way. It starts at start_km, `altitude_km` above the sphere, mu: cosine to the vertical there. The ray's altitude bends up as
@@ -78,7 +71,7 @@ float first_hit(HeightField field, vec3 start_km, vec3 direction, float altitude
   float radius = field.ground_radius_km;
   float nearest_km = -(radius + altitude_km) * mu;  // along the ray, to the centre
   float t = 0.0;
-  int level = min(field.levels, 2);
+  int level = 0;
   for (visits = 0; visits < kMostVisits; visits++) {
     float altitude = altitude_along(radius, altitude_km, mu, t);
     if (altitude > field.highest_km && t >= nearest_km) return -1.0;
@@ -114,7 +107,7 @@ float first_hit(HeightField field, vec3 start_km, vec3 direction, float altitude
       if (s >= 0.0) return t + s * dt;
     }
     dt += kBeyondEdge / max(max(abs(rate.x), abs(rate.y)), 1.0e-3);
-    level = level_after(field, node, grid + rate * dt, level);
+    level = min(level + 1, field.levels);
     t += dt;
   }
   return -1.0;
@@ -158,7 +151,7 @@ vec2 shadow_over(HeightField field, vec2 place_km, vec2 towards, float tan_eleva
       if (altitude > best.x) best = vec2(altitude, s + top * ds);
     }
     ds += kBeyondEdge / max(max(abs(rate.x), abs(rate.y)), 1.0e-3);
-    level = level_after(field, node, grid + rate * ds, level);
+    level = min(level + 1, field.levels);
     s += ds;
   }
   return best;
