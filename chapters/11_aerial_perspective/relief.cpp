@@ -69,6 +69,11 @@ std::vector<Knob> terrain_knobs() {
            .maximum = 4096,
            .initial = 512,
            .integer = true,
+           .rebuilds = true},
+          {.name = "terrain.detail",
+           .meaning = "relief finer than the map's where a ray meets the ground within 250 m",
+           .initial = 1,
+           .choices = {"off", "on"},
            .rebuilds = true}};
 }
 // [/knobs]
@@ -136,13 +141,14 @@ void Relief::set_size(VkExtent2D size) {
 }
 
 // [rebuild]
-// Both passes walk over the same two maps, bindings 0 and 1, and know the same of them, constants 0 to 4.
+// Both passes walk over the same two maps, bindings 0 and 1, and know the same of them, constants 0 to 5.
 void Relief::rebuild() {
   const gpu::Device& device = context_.device;
   const auto bits = [](double value) { return std::bit_cast<uint32_t>(static_cast<float>(value)); };
   const gpu::Specialization constants{bits(context_.scene.planet.ground_radius_km), bits(map_.extent_km),
                                       bits(map_.highest_km), static_cast<uint32_t>(map_.size),
-                                      static_cast<uint32_t>(maxima_.levels)};
+                                      static_cast<uint32_t>(maxima_.levels),
+                                      context_.settings.choice("terrain.detail") == "on"};
   const std::vector<gpu::Binding> bindings{{0, kSampled}, {1, kSampled}, {2, kStorage}};
   const auto make = [&](const char* shader, size_t push, gpu::ComputePipeline& pipeline, gpu::DescriptorSet& set) {
     pipeline = gpu::create_compute_pipeline(device, shader, bindings, static_cast<uint32_t>(push), constants);

@@ -64,15 +64,22 @@ double ridges(double x, double y, uint32_t seed) {
 // [/noise]
 
 // [hills]
-// A plain around the scene's place, ranges further out, and level ground again at the map's edge, where the sphere
-// begins. Relative height; x, y in km.
+// The scene's place is the top of a knoll. Around it lies a valley with low hills, further out stand ranges, and at the map's
+// edge, where the sphere begins, the ground is level again. Relative height; x, y in km.
 double hill(double x, double y, double extent_km, uint32_t seed) {
-  const double from_centre = std::sqrt(x * x + y * y) / (0.5 * extent_km);
-  const double to_edge = std::max(std::abs(x), std::abs(y)) / (0.5 * extent_km);
-  const double ranges = smooth_step(0.13, 0.46, from_centre + 0.07 * noise(x / 9.0, y / 9.0, seed + 40));
-  const double rolling = 0.02 * (1.0 + noise(x / 3.7, y / 3.7, seed + 50) + 0.3 * noise(x / 1.1, y / 1.1, seed + 51));
+  const double from_place = std::sqrt(x * x + y * y), half = 0.5 * extent_km;
+  const double to_edge = std::max(std::abs(x), std::abs(y)) / half;
+  const double wide = noise(x / 9.0, y / 9.0, seed + 40);
+  const double ranges = smooth_step(0.1, 0.44, from_place / half + 0.07 * wide);
   const double crest = ridges(x / 15.0, y / 15.0, seed);
-  return (1.0 - smooth_step(0.8, 0.97, to_edge)) * (rolling + ranges * crest * crest * 1.7);
+  // Hills of some 200 m, in rows: their crests are ridges, too, but rounder ones.
+  const double row = 1.0 - std::abs(noise(x / 4.3 + 0.4 * wide, y / 4.3, seed + 50));
+  const double low = smooth_step(0.012, 0.09, from_place / half) *
+                     (0.075 * row * row * row + 0.02 * (1.0 + noise(x / 1.3, y / 1.3, seed + 51)));
+  const double knoll = 1.0 / (1.0 + from_place * from_place / 0.7);
+  const double bumps = 0.004 * noise(x / 0.61, y / 0.61, seed + 52) + 0.0016 * noise(x / 0.29, y / 0.29, seed + 53);
+  return (1.0 - smooth_step(0.8, 0.97, to_edge)) *
+         (0.01 + 0.055 * knoll * knoll + low + bumps + ranges * crest * crest * 1.7);
 }
 // [/hills]
 

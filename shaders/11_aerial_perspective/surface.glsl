@@ -40,7 +40,12 @@ Surface first_surface(float ground_radius_km, float extent_km, vec3 bare, vec3 s
   surface.up = up_at(ground_radius_km, surface.place_km);
   if (surface.is_terrain) {
     vec2 uv = map_uv(surface.place_km, extent_km);
-    Ground ground = ground_at(slope_at(uv), cover_at(uv), bare, surface.place_km, surface.up, surface.t_km * pixel);
+    vec2 slope = slope_at(uv);
+    // Seen at a low angle a pixel is long; between its width and its length lies what it may show.
+    vec3 level = normalize(surface.up - vec3(slope.x, slope.y, 0.0));
+    float facing = max(-dot(level, direction), 0.02);
+    float footprint_km = surface.t_km * pixel / sqrt(facing);
+    Ground ground = ground_at(slope, cover_at(uv), bare, surface.place_km, surface.up, footprint_km);
     surface.normal = ground.normal;
     surface.albedo = ground.albedo;
   }

@@ -31,7 +31,7 @@ void main() {
   }
   int visits = 0;
   float t = -1.0;
-  if (begins >= 0.0) t = first_hit(height_field(), position.xyz + direction * begins, direction, altitude, mu, visits);
+  if (begins >= 0.0) t = first_hit(height_field(), position.xyz + direction * begins, direction, altitude, mu, begins, visits);
   imageStore(terrain_distance, pixel, vec4(t >= 0.0 ? max(begins + t, 1.0e-6) : 0.0));
 }
 // [/terrain]
