@@ -59,7 +59,7 @@ void main() {
 
   const float terrain_km = imageLoad(terrain_distance, pixel).r;
   const Surface surface = first_surface(air.ground_radius_km, position.w, air.ground_albedo, position.xyz, direction, terrain_km,
-                                        north.w, 1.0 / float(camera.size.y));
+                                        north.w, 2.0 * length(camera.up) / float(camera.size.y));
   if (surface.t_km <= 0.0) {
     imageStore(target, pixel, imageLoad(sky, pixel));
     return;

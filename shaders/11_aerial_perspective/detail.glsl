@@ -1,10 +1,10 @@
-// What the height map does not hold, down to hand's breadths: noise of eight scales, the widest 160 m, each 2.7 times finer than
+// What the height map does not hold, down to a finger's breadth: noise of eleven scales, the widest 160 m, each 2.7 times finer than
 // the one before. Pure functions; km. Its slopes and tones shade the ground wherever it is seen; near the camera its middle scales
 // are relief that a ray can meet.
 #ifndef WELKIN_DETAIL_GLSL
 #define WELKIN_DETAIL_GLSL
 
-const int kScales = 8;
+const int kScales = 11;
 const float kWidest_km = 0.16;
 const float kFiner = 0.37;
 const float kSteepness = 0.1;  // of a scale: its height is this times its wavelength times noise, 0 ... 1
@@ -45,7 +45,8 @@ vec2 turned_back(vec2 v) { return vec2(0.8 * v.x + 0.6 * v.y, 0.8 * v.y - 0.6 * 
 // [detail]
 struct Detail {
   float patches;  // sum over the wide scales, 20 m and more, about -0.5 ... 0.5: what grows where
-  float grain;    // over the fine ones
+  float grain;    // over those of some metres
+  float blades;   // over the finest
   float sharp;    // share of the scales that are there: how sharp a border can be
   vec2 tilt;      // slope of all of them, in units of kSteepness
 };
@@ -55,17 +56,19 @@ Detail detail_at(vec2 place_km, float footprint_km) {
   Detail detail;
   detail.patches = 0.0;
   detail.grain = 0.0;
+  detail.blades = 0.0;
   detail.sharp = 0.0;
   detail.tilt = vec2(0.0, 0.0);
   float wave_km = kWidest_km;
   int scale = 0;
   for (; scale < kScales; scale++) {
-    float kept = clamp(1.5 - 3.0 * footprint_km / wave_km, 0.0, 1.0);
+    float kept = clamp(1.6 - 2.4 * footprint_km / wave_km, 0.0, 1.0);
     if (kept <= 0.0) break;
     vec3 rough = value_noise(place_km / wave_km + vec2(17.0 * float(scale), 5.0));
     if (scale < 3) detail.patches += kept * 0.5 * (rough.x - 0.5);
-    else detail.grain += kept * 0.3 * (rough.x - 0.5);
-    detail.sharp += kept / float(kScales);
+    else if (scale < 6) detail.grain += kept * 0.4 * (rough.x - 0.5);
+    else detail.blades += kept * 0.4 * (rough.x - 0.5);
+    if (scale < 8) detail.sharp += kept * 0.125;
     detail.tilt = turned(detail.tilt + vec2(rough.y, rough.z) * kept);
     place_km = turned(place_km);
     wave_km *= kFiner;

@@ -21,19 +21,21 @@ float bordered(float share, float rough, float sharp) {
 Ground ground_at(vec2 slope, vec4 cover, vec3 bare, vec2 place_km, vec3 up, float footprint_km) {
   Detail detail = detail_at(place_km, footprint_km);
   float total = max(cover.x + cover.y + cover.z + cover.w, 1.0e-6);
-  float rough = detail.patches + 0.5 * detail.grain;
-  float rock = bordered(cover.y / total, 0.7 * rough, detail.sharp);
-  float snow = bordered(cover.z / total, 0.7 * rough, detail.sharp);
+  float rough = detail.patches + 0.5 * detail.grain + 0.25 * detail.blades;
+  float rock = bordered(cover.y / total, 0.8 * rough, detail.sharp);
+  float snow = bordered(cover.z / total, 0.8 * rough, detail.sharp);
   float soil = cover.w / total;
-  // Meadow: green in the hollows, straw where it is dry, dark shrubs, and limestone that looks out of it.
-  float dry = smoothstep(-0.25, 0.25, detail.patches + 0.3 * detail.grain);
-  float shrub = smoothstep(0.10, 0.10 + 0.3 - 0.2 * detail.sharp, -rough - 0.05);
-  float stone = smoothstep(0.16, 0.22, detail.grain + 0.3 * detail.patches);
-  vec3 grass = mix(mix(vec3(0.070, 0.095, 0.032), vec3(0.165, 0.140, 0.065), dry), vec3(0.028, 0.042, 0.016), shrub);
-  grass = mix(grass, vec3(0.21, 0.195, 0.17), stone * (1.0 - shrub));
-  vec3 cliff = mix(vec3(0.13, 0.117, 0.105), vec3(0.27, 0.25, 0.22), smoothstep(-0.3, 0.3, rough));
-  vec3 mixed = mix(grass * clamp(1.0 + 1.2 * detail.grain, 0.5, 1.4), bare, soil);
-  mixed = mix(mixed, cliff * clamp(1.0 + 1.2 * detail.grain, 0.5, 1.4), rock);
+  // Meadow: green in the hollows, straw where it is dry, dark shrubs, and stones that look out of it.
+  float dry = smoothstep(-0.28, 0.28, detail.patches + 0.6 * detail.grain + 0.5 * detail.blades);
+  float shrub = smoothstep(0.06, 0.06 + 0.3 - 0.2 * detail.sharp, -detail.patches - 0.7 * detail.grain - 0.3 * detail.blades);
+  float stone = smoothstep(0.30, 0.40, detail.grain + 0.35 * detail.blades - 0.5 * detail.patches);
+  vec3 grass = mix(mix(vec3(0.066, 0.086, 0.030), vec3(0.150, 0.126, 0.062), dry), vec3(0.030, 0.042, 0.018), shrub);
+  grass *= clamp(1.0 + 1.6 * detail.blades + 0.5 * detail.grain, 0.35, 1.6);
+  vec3 limestone = vec3(0.205, 0.190, 0.168) * clamp(1.0 + 1.2 * detail.blades, 0.5, 1.3);
+  grass = mix(grass, limestone, stone * (1.0 - shrub));
+  vec3 cliff = mix(vec3(0.120, 0.108, 0.096), vec3(0.235, 0.217, 0.190), smoothstep(-0.3, 0.3, rough));
+  cliff *= clamp(1.0 + 0.8 * detail.grain + detail.blades, 0.5, 1.4);
+  vec3 mixed = mix(mix(grass, bare, soil), cliff, rock);
   mixed = mix(mixed, vec3(0.80, 0.82, 0.85) * (1.0 + 0.1 * detail.grain), snow);
   Ground ground;
   ground.albedo = clamp(mixed, 0.0, 0.95);

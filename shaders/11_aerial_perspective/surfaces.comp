@@ -34,7 +34,8 @@ void main() {
   const vec3 above = cross(east.xyz, north.xyz);
   const vec3 direction = east.xyz * view.x + north.xyz * view.y + above * view.z;
   const Surface surface = first_surface(RADIUS_KM, EXTENT_KM, vec3(position.w, east.w, north.w), position.xyz, direction,
-                                        imageLoad(terrain_distance, pixel).r, SIGNS_AZIMUTH, 1.0 / float(camera.size.y));
+                                        imageLoad(terrain_distance, pixel).r, SIGNS_AZIMUTH,
+                                        2.0 * length(camera.up) / float(camera.size.y));
   const vec3 local = vec3(dot(surface.normal, east.xyz), dot(surface.normal, north.xyz), dot(surface.normal, above));
   imageStore(normals, pixel, surface.t_km > 0.0 ? vec4(local, surface.t_km) : vec4(0.0));
   imageStore(albedos, pixel, vec4(surface.albedo, 1.0));
