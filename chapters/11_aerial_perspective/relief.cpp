@@ -108,6 +108,7 @@ Relief::Relief(const app::Context& context, graph::Graph& graph)
       slopes_(upload(context.device, "terrain slopes", VK_FORMAT_R32G32_SFLOAT, map_.size, map_.size, map_.slope)),
       cover_(upload(context.device, "terrain cover", VK_FORMAT_R16G16B16A16_SFLOAT, map_.size, map_.size,
                     halves(map_.cover))) {
+  check_fits_planet(*context.scene.terrain, context.scene.planet.ground_radius_km);
   // Only heights are asked for again, where the camera stands.
   map_.slope = {}, map_.cover = {}, maxima_.highest_km = {};
   if (has_shadows()) {
@@ -145,8 +146,10 @@ void Relief::set_size(VkExtent2D size) {
 void Relief::rebuild() {
   const gpu::Device& device = context_.device;
   const auto bits = [](double value) { return std::bit_cast<uint32_t>(static_cast<float>(value)); };
-  const gpu::Specialization constants{bits(context_.scene.planet.ground_radius_km), bits(map_.extent_km),
-                                      bits(map_.highest_km), static_cast<uint32_t>(map_.size),
+  const gpu::Specialization constants{bits(context_.scene.planet.ground_radius_km),
+                                      bits(map_.extent_km),
+                                      bits(map_.highest_km),
+                                      static_cast<uint32_t>(map_.size),
                                       static_cast<uint32_t>(maxima_.levels),
                                       context_.settings.choice("terrain.detail") == "on"};
   const std::vector<gpu::Binding> bindings{{0, kSampled}, {1, kSampled}, {2, kStorage}};

@@ -64,8 +64,8 @@ double ridges(double x, double y, uint32_t seed) {
 // [/noise]
 
 // [hills]
-// The scene's place is the top of a knoll. Around it lies a valley with low hills, further out stand ranges, and at the map's
-// edge, where the sphere begins, the ground is level again. Relative height; x, y in km.
+// The scene's place is the top of a knoll. Around it lies a valley with low hills, further out stand ranges, and at the
+// map's edge, where the sphere begins, the ground is level again. Relative height; x, y in km.
 double hill(double x, double y, double extent_km, uint32_t seed) {
   const double from_place = std::sqrt(x * x + y * y), half = 0.5 * extent_km;
   const double to_edge = std::max(std::abs(x), std::abs(y)) / half;
@@ -170,6 +170,12 @@ TerrainMap make_terrain_map(const Terrain& terrain) {
   map.cover.reserve(map.height_km.size());
   add_slopes_and_cover(map);
   return map;
+}
+
+void check_fits_planet(const Terrain& terrain, double ground_radius_km) {
+  if (terrain.extent_km > ground_radius_km)
+    fail("terrain.extent_km: a map of {} km on a planet of {} km radius; accepted is at most the radius",
+         terrain.extent_km, ground_radius_km);
 }
 
 // [height_maxima]

@@ -27,6 +27,10 @@ struct TerrainMap {
 // Throws Error: a file that is not a square 16-bit grayscale PNG of 2 to 4096 samples a side.
 TerrainMap make_terrain_map(const Terrain& terrain);
 
+// Throws Error if the map is wider than the planet's radius: towards the planet's edge, seen along the vertical of the
+// scene's place, a place of the map is no longer one of the ground.
+void check_fits_planet(const Terrain& terrain, double ground_radius_km);
+
 // Maxima over squares of patches, for walks over the map (shaders/11_aerial_perspective/height_field.glsl). Patch (i,
 // j) is the square between samples i - 1 and i, j - 1 and j, the outer ones beyond the outer samples and level: size +
 // 1 a side. A node of level k holds the highest corner of 2^k x 2^k patches. Levels 1, 2, ... lie below each other in

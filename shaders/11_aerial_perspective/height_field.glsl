@@ -55,14 +55,19 @@ float first_root(vec3 c) {
 }
 // [/patch_along]
 
-// How far a line may go, in steps of `rate`, before it leaves a node.
+// Steps of `rate` from a place between two borders to the one it makes for. On a border already, and along it or out: as if it
+// lay a little further, since a line that runs along one would never leave it.
+float steps_between(float at, float low, float high, float rate) {
+  float room = rate > 0.0 ? high - at : at - low;
+  return (room < kBeyondEdge ? kBeyondEdge : room) / max(abs(rate), 1.0e-9);
+}
+
+// How far a line may go before it leaves a node, or the map.
 float steps_to_border(HeightField field, vec2 grid, vec2 rate, ivec2 node, int level) {
-  vec2 low = max(vec2(float(node.x << level), float(node.y << level)), vec2(0.5, 0.5));
-  float n = float(field.size) + 0.5;
-  vec2 high = min(vec2(float((node.x + 1) << level), float((node.y + 1) << level)), vec2(n, n));
-  float across = rate.x > 0.0 ? (high.x - grid.x) / max(rate.x, 1.0e-9) : (grid.x - low.x) / max(-rate.x, 1.0e-9);
-  float down = rate.y > 0.0 ? (high.y - grid.y) / max(rate.y, 1.0e-9) : (grid.y - low.y) / max(-rate.y, 1.0e-9);
-  return max(min(across, down), 0.0);
+  float end = float(field.size) + 0.5;
+  float across = steps_between(grid.x, max(float(node.x << level), 0.5), min(float((node.x + 1) << level), end), rate.x);
+  float down = steps_between(grid.y, max(float(node.y << level), 0.5), min(float((node.y + 1) << level), end), rate.y);
+  return min(across, down);
 }
 
 // [meet_relief]
@@ -106,9 +111,11 @@ float first_hit(HeightField field, vec3 start_km, vec3 direction, float altitude
     float patch_km = field.extent_km / float(field.size);
     float beyond = -radius - (start_km.z + direction.z * t);  // the half of the planet that the map is not on
     if (outside > 0.0 || beyond > 0.0) {
-      if (altitude < -kDrowned_km) return -1.0;
       outside = outside > 0.0 ? outside / max(max(abs(speed.x), abs(speed.y)), 1.0e-6) : 0.0;
-      t += max(max(outside, beyond), kBeyondEdge * patch_km);  // no further than the map's square can be
+      float step_km = max(max(outside, beyond), kBeyondEdge * patch_km);  // no further than the map's square can be
+      float lowest = altitude_along(radius, altitude_km, mu, clamp(nearest_km, t, t + step_km));
+      if (lowest < -kDrowned_km) return -1.0;
+      t += step_km;
       continue;
     }
     vec2 grid = grid_at(field, place);
