@@ -135,7 +135,7 @@ void Relief::make_shadow_image() {
 }
 
 void Relief::set_size(VkExtent2D size) {
-  distance_ = gpu::create_image(context_.device, "terrain distance", size, VK_FORMAT_R32_SFLOAT,
+  distance_ = gpu::create_image(context_.device, "terrain distance", size, VK_FORMAT_R32G32B32A32_SFLOAT,
                                 VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
   gpu::write_storage_image(context_.device, distance_set_, 2, distance_);
   graph_.replace(distance_resource_, distance_);

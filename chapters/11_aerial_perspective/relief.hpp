@@ -47,7 +47,7 @@ class Relief {
   const gpu::Image& slopes() const { return slopes_; }
   const gpu::Image& cover() const { return cover_; }
   const gpu::Image& shadows() const { return has_shadows() ? shadows_ : heights_; }
-  const gpu::Image& distance() const { return distance_; }  // km along each pixel's ray, 0: no terrain
+  const gpu::Image& distance() const { return distance_; }  // as terrain.comp writes it
   VkSampler sampler() const { return sampler_; }
   graph::Resource distance_resource() const { return distance_resource_; }
   graph::Resource shadow_resource() const { return shadow_resource_; }  // only with shadows

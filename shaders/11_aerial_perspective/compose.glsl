@@ -9,7 +9,7 @@ layout(constant_id = 22) const int MARCH_SLICES = 64;
 layout(binding = 3) uniform sampler3D glows;
 layout(binding = 4) uniform sampler3D extinctions;
 #endif
-layout(binding = 5, r32f) uniform readonly image2D terrain_distance;
+layout(binding = 5, rgba32f) uniform readonly image2D terrain_distance;
 layout(binding = 6) uniform sampler2D slope_map;
 layout(binding = 7) uniform sampler2D cover_map;
 layout(binding = 8, rgba32f) uniform readonly image2D sky;
@@ -50,30 +50,49 @@ RayLight air_before(Atmosphere air, vec2 place, vec3 view, float t_km) {
 }
 
 // [compose]
-void main() {
-  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, camera.size))) return;
-  const Atmosphere air = atmosphere;
-  const vec3 view = camera_direction(camera, pixel);
-  const vec3 direction = to_global(view), sun = to_global(camera.sun);
-
-  const float terrain_km = imageLoad(terrain_distance, pixel).r;
-  const Surface surface = first_surface(air.ground_radius_km, position.w, air.ground_albedo, position.xyz, direction, terrain_km,
-                                        north.w, 2.0 * length(camera.up) / float(camera.size.y));
-  if (surface.t_km <= 0.0) {
-    imageStore(target, pixel, imageLoad(sky, pixel));
-    return;
-  }
-
-  const float altitude = max(altitude_of(air.ground_radius_km, position.xyz + direction * surface.t_km), 0.0);
+// A surface, lit by sun and sky, through the air before it.
+vec3 surface_seen(Atmosphere air, Surface surface, vec3 view, vec3 sun, float altitude, vec2 place) {
   const float mu_sun = dot(sun, surface.up);
   const MethodAir method = method_air(air, MS_METHOD);
   const float seen_sun = surface.is_terrain ? sun_on_ground(surface.place_km) : sun_over(surface.place_km, altitude);
   const vec3 beam = sun_through_air(method.air, altitude, mu_sun) * seen_sun;
   const vec3 from_sky = HIGHER_ORDERS ? sky_irradiance(air, altitude, mu_sun) : vec3(0.0);
   const vec3 lit = surface_light(surface.albedo, air.ground_albedo, surface.normal, surface.up, sun, beam, from_sky) * air.solar_irradiance;
+  const RayLight before = air_before(air, place, view, surface.t_km);
+  return before.radiance + before.transmittance * lit;
+}
 
-  const RayLight before = air_before(air, (vec2(pixel) + 0.5) / vec2(camera.size), view, surface.t_km);
-  imageStore(target, pixel, vec4(before.radiance + before.transmittance * lit, 1.0));
+int next_layer(vec3 shares, int layer) {
+  if (layer == 0 && shares.x <= 0.0) layer = 1;
+  if (layer == 1 && shares.y <= 0.0) layer = 2;
+  return layer == 2 && shares.z <= 0.0 ? 3 : layer;
+}
+
+void main() {
+  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, camera.size))) return;
+  const Atmosphere air = atmosphere;
+  const vec3 view = camera_direction(camera, pixel);
+  const vec3 direction = to_global(view), sun = to_global(camera.sun);
+  const vec2 place = (vec2(pixel) + 0.5) / vec2(camera.size);
+  const float pixel_rad = 2.0 * length(camera.up) / float(camera.size.y);
+
+  // From behind: the sky, or the terrain; the edge of a ridge that covers a part of the pixel; a sign that may, too.
+  const vec4 terrain = imageLoad(terrain_distance, pixel);
+  vec3 radiance = terrain.x > 0.0 ? vec3(0.0) : imageLoad(sky, pixel).rgb;
+  SignSeen sign;
+  sign.share = 0.0;
+  if (north.w > -100.0) sign = sign_before(air.ground_radius_km, position.xyz, direction, terrain.x > 0.0 ? terrain.x : 1.0e9, north.w, pixel_rad);
+  const vec3 shares = vec3(terrain.x > 0.0 ? 1.0 : 0.0, terrain.z, sign.share);
+  // Nearly all pixels have one of the three at most: a loop over those that are there.
+  for (int layer = next_layer(shares, 0); layer < 3; layer = next_layer(shares, layer + 1)) {
+    const float share = shares[layer];
+    Surface surface;
+    if (layer == 2) surface = sign.surface;
+    else surface = terrain_surface(air.ground_radius_km, position.w, air.ground_albedo, position.xyz, direction, layer == 0 ? terrain.x : terrain.y, pixel_rad);
+    const float altitude = max(altitude_of(air.ground_radius_km, position.xyz + direction * surface.t_km), 0.0);
+    radiance = mix(radiance, surface_seen(air, surface, view, sun, altitude, place), share);
+  }
+  imageStore(target, pixel, vec4(radiance, 1.0));
 }
 // [/compose]

@@ -27,9 +27,9 @@ Ground ground_at(vec2 slope, vec4 cover, vec3 bare, vec2 place_km, vec3 up, floa
   float soil = cover.w / total;
   // Meadow: green in the hollows, straw where it is dry, dark shrubs, and stones that look out of it.
   float dry = smoothstep(-0.28, 0.28, detail.patches + 0.6 * detail.grain + 0.5 * detail.blades);
-  float shrub = smoothstep(0.06, 0.06 + 0.3 - 0.2 * detail.sharp, -detail.patches - 0.7 * detail.grain - 0.3 * detail.blades);
+  float shrub = smoothstep(0.06, 0.06 + 0.3 - 0.2 * detail.sharp, -0.5 * detail.patches - 0.8 * detail.grain - 0.3 * detail.blades);
   float stone = smoothstep(0.30, 0.40, detail.grain + 0.35 * detail.blades - 0.5 * detail.patches);
-  vec3 grass = mix(mix(vec3(0.066, 0.086, 0.030), vec3(0.150, 0.126, 0.062), dry), vec3(0.030, 0.042, 0.018), shrub);
+  vec3 grass = mix(mix(vec3(0.066, 0.086, 0.030), vec3(0.150, 0.126, 0.062), dry), vec3(0.036, 0.050, 0.022), shrub);
   grass *= clamp(1.0 + 1.6 * detail.blades + 0.5 * detail.grain, 0.35, 1.6);
   vec3 limestone = vec3(0.205, 0.190, 0.168) * clamp(1.0 + 1.2 * detail.blades, 0.5, 1.3);
   grass = mix(grass, limestone, stone * (1.0 - shrub));

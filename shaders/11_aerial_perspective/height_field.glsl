@@ -12,7 +12,6 @@
 #define WELKIN_HEIGHT_FIELD_GLSL
 
 #include "03_planet_and_rays/ray_sphere.glsl"
-#include "11_aerial_perspective/detail.glsl"
 #include "11_aerial_perspective/terrain.glsl"
 
 const int kMostVisits = 512;         // of nodes by one walk; seen: below 200
@@ -25,7 +24,6 @@ struct HeightField {
   float highest_km;
   int size;    // samples a side
   int levels;  // of the tree; a node of the last is 2^levels patches wide
-  bool has_relief;  // detail.glsl adds to the map near the camera
 };
 
 vec2 grid_at(HeightField field, vec2 place_km) {
@@ -70,39 +68,33 @@ float steps_to_border(HeightField field, vec2 grid, vec2 rate, ivec2 node, int l
   return min(across, down);
 }
 
-// [meet_relief]
-// First s in from ... to where a ray's height over a patch, c.x + c.y s + c.z s^2, comes down to the relief on it: steps of
-// equal length, then where the last one's chord crosses. Above 1 if it does not.
-const int kReliefSteps = 12;
-float meet_relief(vec3 c, vec2 place_km, vec2 speed, float dt, float from, float to, float share) {
-  float s_before = from;
-  float f_before = share * kRelief_km;
-  for (int i = 1; i <= kReliefSteps; i++) {
-    float s = from + (to - from) * float(i) / float(kReliefSteps);
-    float f = c.x + s * (c.y + s * c.z) - share * relief_at(place_km + speed * (s * dt));
-    if (f <= 0.0) return s_before + (s - s_before) * f_before / max(f_before - f, 1.0e-12);
-    s_before = s;
-    f_before = f;
-  }
-  return 2.0;
-}
-// [/meet_relief]
-
 // [first_hit]
-// Distance at which a ray first meets the terrain; below 0 if it does not, be it that the sphere outside of the map is in the
-// way. It starts at start_km, `altitude_km` above the sphere, mu: cosine to the vertical there, begins_km from the eye. The ray's
-// altitude bends up as the ground falls away; its place runs at a speed that hardly changes over a node. visits: how many nodes were looked at.
-float first_hit(HeightField field, vec3 start_km, vec3 direction, float altitude_km, float mu, float begins_km,
-                out int visits) {
+// What a ray meets. An edge is a crest that it passes by less than a pixel: the pixel shows some of it.
+struct Hit {
+  float t_km;       // of the terrain, below 0: none
+  float approach;   // by how much the ray comes nearer to the surface per km, where it meets it
+  float edge_km;    // of the nearest edge before it
+  float edge_share; // of the pixel that the edge covers, 0: none
+  int visits;       // nodes that were looked at
+};
+
+// Where a ray first meets the terrain. The sphere outside of the map may be in the way before it does. It starts at start_km, `altitude_km` above the sphere, mu: cosine to the vertical there, begins_km from the eye. The ray's
+// altitude bends up as the ground falls away; its place runs at a speed that hardly changes over a node. pixel: how wide one is
+// at a distance of 1.
+Hit first_hit(HeightField field, vec3 start_km, vec3 direction, float altitude_km, float mu, float begins_km, float pixel) {
+  Hit hit;
+  hit.t_km = -1.0;
+  hit.approach = 1.0;
+  hit.edge_km = -1.0;
+  hit.edge_share = 0.0;
   float radius = field.ground_radius_km;
   float nearest_km = -(radius + altitude_km) * mu;  // along the ray, to the centre
   float t = 0.0;
   int level = 0;
-  for (visits = 0; visits < kMostVisits; visits++) {
+  for (hit.visits = 0; hit.visits < kMostVisits; hit.visits++) {
     float altitude = altitude_along(radius, altitude_km, mu, t);
-    float share = field.has_relief ? relief_share(begins_km + t) : 0.0;
-    float relief_km = share * kRelief_km;
-    if (altitude > field.highest_km + relief_km && t >= nearest_km) return -1.0;
+    float half_pixel_km = 0.5 * (begins_km + t) * pixel;
+    if (altitude > field.highest_km + half_pixel_km && t >= nearest_km) return hit;
     float scale = radius / (radius + altitude);
     vec2 place = vec2((start_km.x + direction.x * t) * scale, (start_km.y + direction.y * t) * scale);
     float climb = (t - nearest_km) / (radius + altitude);  // of altitude, per km
@@ -114,7 +106,7 @@ float first_hit(HeightField field, vec3 start_km, vec3 direction, float altitude
       outside = outside > 0.0 ? outside / max(max(abs(speed.x), abs(speed.y)), 1.0e-6) : 0.0;
       float step_km = max(max(outside, beyond), kBeyondEdge * patch_km);  // no further than the map's square can be
       float lowest = altitude_along(radius, altitude_km, mu, clamp(nearest_km, t, t + step_km));
-      if (lowest < -kDrowned_km) return -1.0;
+      if (lowest < -kDrowned_km) return hit;
       t += step_km;
       continue;
     }
@@ -126,7 +118,7 @@ float first_hit(HeightField field, vec3 start_km, vec3 direction, float altitude
     if (level > 0) {
       float lowest = min(altitude, altitude_end);
       if (t < nearest_km && nearest_km < t + dt) lowest = altitude_along(radius, altitude_km, mu, nearest_km);
-      if (lowest <= highest_in(node, level) + relief_km) {
+      if (lowest <= highest_in(node, level) + half_pixel_km) {
         level--;
         continue;
       }
@@ -134,19 +126,26 @@ float first_hit(HeightField field, vec3 start_km, vec3 direction, float altitude
       vec3 surface = patch_along(patch_corners(node), vec2(grid.x - float(node.x), grid.y - float(node.y)), rate * dt);
       float bend = 2.0 * (altitude - 2.0 * altitude_along(radius, altitude_km, mu, t + 0.5 * dt) + altitude_end);
       vec3 over = vec3(altitude, altitude_end - altitude - bend, bend) - surface;
-      float s = first_root(vec3(over.x - relief_km, over.y, over.z));
-      if (s >= 0.0 && share > 0.0) {
-        float foot = first_root(over);
-        s = meet_relief(over, place, speed, dt, s, foot >= 0.0 ? foot : 1.0, share);
-        if (s > 1.0 && foot >= 0.0) s = foot;
+      float s = first_root(over);
+      if (s >= 0.0) {
+        hit.t_km = t + s * dt;
+        hit.approach = -(over.y + 2.0 * over.z * s) / max(dt, 1.0e-9);
+        return hit;
       }
-      if (s >= 0.0 && s <= 1.0) return t + s * dt;
+      // The nearest it comes to the patch, if it rises from it again: an edge, half a pixel of it at a clearance of 0.
+      float near = over.z > 0.0 ? clamp(-0.5 * over.y / over.z, 0.0, 1.0) : (over.y + over.z < 0.0 ? 1.0 : 0.0);
+      float height = over.x + near * (over.y + near * over.z);
+      float covered = 0.5 - 0.5 * height / max(half_pixel_km, 1.0e-9);
+      if (near < 1.0 && covered > hit.edge_share) {
+        hit.edge_share = covered;
+        hit.edge_km = t + near * dt;
+      }
     }
     dt += kBeyondEdge / max(max(abs(rate.x), abs(rate.y)), 1.0e-3);
     level = min(level + 1, field.levels);
     t += dt;
   }
-  return -1.0;
+  return hit;
 }
 // [/first_hit]
 

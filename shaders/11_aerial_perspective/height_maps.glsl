@@ -1,4 +1,4 @@
-// The height map and the tree of its maxima as images, for the walks of height_field.glsl. Bindings 0 and 1, constants 0 to 5.
+// The height map and the tree of its maxima as images, for the walks of height_field.glsl. Bindings 0 and 1, constants 0 to 4.
 #ifndef WELKIN_HEIGHT_MAPS_GLSL
 #define WELKIN_HEIGHT_MAPS_GLSL
 
@@ -7,7 +7,6 @@ layout(constant_id = 1) const float EXTENT_KM = 128.0;
 layout(constant_id = 2) const float HIGHEST_KM = 3.0;
 layout(constant_id = 3) const int MAP_SIZE = 1024;   // samples a side
 layout(constant_id = 4) const int TREE_LEVELS = 7;   // of the tree of maxima
-layout(constant_id = 5) const bool HAS_RELIEF = false;
 
 layout(binding = 0) uniform sampler2D height_map;
 layout(binding = 1) uniform sampler2D height_maxima;  // levels 1, 2, ... below each other; laid by tree_of_maxima()
@@ -27,6 +26,6 @@ float highest_in(ivec2 node, int level) {
 
 #include "11_aerial_perspective/height_field.glsl"
 
-HeightField height_field() { return HeightField(GROUND_RADIUS_KM, EXTENT_KM, HIGHEST_KM, MAP_SIZE, TREE_LEVELS, HAS_RELIEF); }
+HeightField height_field() { return HeightField(GROUND_RADIUS_KM, EXTENT_KM, HIGHEST_KM, MAP_SIZE, TREE_LEVELS); }
 
 #endif

@@ -10,7 +10,7 @@ layout(constant_id = 0) const float SIGNS_AZIMUTH = -1.0e3;  // rad, below -100 
 layout(constant_id = 1) const float EXTENT_KM = 128.0;
 layout(constant_id = 2) const float RADIUS_KM = 6360.0;
 
-layout(binding = 0, r32f) uniform readonly image2D terrain_distance;
+layout(binding = 0, rgba32f) uniform readonly image2D terrain_distance;
 layout(binding = 1) uniform sampler2D slope_map;
 layout(binding = 2) uniform sampler2D cover_map;
 layout(binding = 3, rgba32f) uniform writeonly image2D normals;  // w: distance, 0: nothing is met
@@ -33,11 +33,17 @@ void main() {
   const vec3 view = camera_direction(camera, pixel);
   const vec3 above = cross(east.xyz, north.xyz);
   const vec3 direction = east.xyz * view.x + north.xyz * view.y + above * view.z;
-  const Surface surface = first_surface(RADIUS_KM, EXTENT_KM, vec3(position.w, east.w, north.w), position.xyz, direction,
-                                        imageLoad(terrain_distance, pixel).r, SIGNS_AZIMUTH,
-                                        2.0 * length(camera.up) / float(camera.size.y));
+  const float pixel_rad = 2.0 * length(camera.up) / float(camera.size.y);
+  const vec4 terrain = imageLoad(terrain_distance, pixel);
+  bool seen = terrain.x > 0.0;
+  Surface surface;
+  if (seen) surface = terrain_surface(RADIUS_KM, EXTENT_KM, vec3(position.w, east.w, north.w), position.xyz, direction, terrain.x, pixel_rad);
+  if (SIGNS_AZIMUTH > -100.0) {
+    const SignSeen sign = sign_before(RADIUS_KM, position.xyz, direction, seen ? terrain.x : 1.0e9, SIGNS_AZIMUTH, pixel_rad);
+    if (sign.share > 0.5) surface = sign.surface, seen = true;  // a path meets one surface or the other
+  }
   const vec3 local = vec3(dot(surface.normal, east.xyz), dot(surface.normal, north.xyz), dot(surface.normal, above));
-  imageStore(normals, pixel, surface.t_km > 0.0 ? vec4(local, surface.t_km) : vec4(0.0));
-  imageStore(albedos, pixel, vec4(surface.albedo, 1.0));
+  imageStore(normals, pixel, seen ? vec4(local, surface.t_km) : vec4(0.0));
+  imageStore(albedos, pixel, seen ? vec4(surface.albedo, 1.0) : vec4(0.0));
 }
 // [/surfaces]

@@ -1,12 +1,15 @@
-// How far away each pixel's ray first meets the terrain, km; 0 where it does not.
+// How far away each pixel's ray first meets the terrain, and what edge it passes before that; km, 0 where there is none.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "interop/camera.h"
 #include "03_planet_and_rays/camera.glsl"
 #include "11_aerial_perspective/height_maps.glsl"
+#include "11_aerial_perspective/detail.glsl"
 
-layout(binding = 2, r32f) uniform writeonly image2D terrain_distance;
+layout(constant_id = 5) const bool HAS_RELIEF = true;
+
+layout(binding = 2, rgba32f) uniform writeonly image2D terrain_distance;  // x: terrain, y: edge before it, z: its share
 layout(push_constant) uniform Push {
   CameraRays camera;
   vec4 position;  // xyz: of the camera, global frame, km
@@ -29,9 +32,12 @@ void main() {
     mu = -sqrt(max(1.0 - sine_there * sine_there, 0.0));
     altitude = HIGHEST_KM;
   }
-  int visits = 0;
-  float t = -1.0;
-  if (begins >= 0.0) t = first_hit(height_field(), position.xyz + direction * begins, direction, altitude, mu, begins, visits);
-  imageStore(terrain_distance, pixel, vec4(t >= 0.0 ? max(begins + t, 1.0e-6) : 0.0));
+  Hit hit = Hit(-1.0, 1.0, -1.0, 0.0, 0);
+  const float pixel_rad = 2.0 * length(camera.up) / float(camera.size.y);
+  if (begins >= 0.0) hit = first_hit(height_field(), position.xyz + direction * begins, direction, altitude, mu, begins, pixel_rad);
+  float t = hit.t_km >= 0.0 ? max(begins + hit.t_km, 1.0e-6) : 0.0;
+  if (HAS_RELIEF) t = meet_relief(place_below(GROUND_RADIUS_KM, position.xyz + direction * t), direction.xy, t > 0.0 ? t : 1.0e9, hit.approach);
+  const float edge = hit.edge_share > 0.0 ? begins + hit.edge_km : 0.0;
+  imageStore(terrain_distance, pixel, vec4(t < 1.0e8 ? t : 0.0, edge, hit.edge_share, 0.0));
 }
 // [/terrain]

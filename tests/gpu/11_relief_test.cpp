@@ -53,7 +53,7 @@ class Run {
       timer.begin_frame(commands);
       graph.execute({commands, relief.distance(), camera, timer, 0, 0, 0.0, pose.position_km});
     });
-    distances = read(relief.distance(), 1, pool);
+    distances = read(relief.distance(), 4, pool);
     shadows = read(relief.shadows(), 4, pool);
     map = relief.map();
   }
@@ -218,7 +218,7 @@ TEST_CASE("distances of a rough map against a march in double, from the ground, 
         truth = t;
         break;
       }
-      const double met = run.distances[size_t(n)];
+      const double met = run.distances[4 * size_t(n)];
       ++compared;
       // A ray that grazes a crest may meet it or pass it by less than a step.
       if ((met > 0.0) != (truth > 0.0) || std::abs(met - truth) > 0.02) ++unlike;

@@ -53,7 +53,7 @@ HeightField field_of(Atmosphere air, vec4 c) {
   field_size = int(c.x), field_kind = int(c.y);
   int levels = 1;
   while ((8 << levels) < field_size + 1) levels++;
-  return HeightField(air.ground_radius_km, field_extent_km(), field_kind == 0 ? 2.0 : 3.0, field_size, levels, false);
+  return HeightField(air.ground_radius_km, field_extent_km(), field_kind == 0 ? 2.0 : 3.0, field_size, levels);
 }
 #include "../tests/gpu/shaders/atmosphere_of.glsl"
 
@@ -96,10 +96,9 @@ RayLight run(Atmosphere air, vec4 a, vec4 b, vec4 c) {
     return light;
   }
   if (kind == 5) {  // start a.xyz, its altitude a.w; direction b.xyz, mu b.w; side c.x, map c.y
-    int visits = 0;
     const HeightField field = field_of(air, c);
-    light.radiance.x = first_hit(field, a.xyz, b.xyz, a.w, b.w, 0.0, visits);
-    light.radiance.y = float(visits);
+    const Hit hit = first_hit(field, a.xyz, b.xyz, a.w, b.w, 0.0, 0.0);
+    light.radiance.xy = vec2(hit.t_km, hit.visits);
     return light;
   }
   if (kind == 10) {  // place a.xy, tangent of the sun's elevation a.z; towards the sun b.xy; side c.x, map c.y
@@ -124,7 +123,7 @@ RayLight run(Atmosphere air, vec4 a, vec4 b, vec4 c) {
     light.transmittance = ground.normal;
     return light;
   }
-  const SignHit hit = meet_sign(int(c.x), air.ground_radius_km, c.y, a.xyz, b.xyz);
+  const SignHit hit = meet_sign(int(c.x), air.ground_radius_km, c.y, a.xyz, b.xyz, 1.0e-4);
   light.radiance = vec3(hit.t_km, hit.paint, 0.0);
   light.transmittance = hit.normal;
   return light;

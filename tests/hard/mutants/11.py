@@ -16,7 +16,7 @@ MUTANTS = [
     ("a ground that does not curve away", "11_aerial_perspective/terrain.glsl",
      " - d2 / (ground_radius_km + upright));", ");", "a place of the map and the point above it are inverse*"),
     ("a node is passed by what lies beneath its highest point", "11_aerial_perspective/height_field.glsl",
-     "if (lowest <= highest_in(node, level) + relief_km) {", "if (lowest <= 0.8 * highest_in(node, level)) {",
+     "if (lowest <= highest_in(node, level) + half_pixel_km) {", "if (lowest <= 0.8 * highest_in(node, level)) {",
      "one white sample is as high as a white pixel*"),
     ("a bilinear surface without its twist", "11_aerial_perspective/height_field.glsl",
      "float twist = corners.w - corners.z - across;", "float twist = 0.0;", "shadows of a rough map against a march in double*"),
