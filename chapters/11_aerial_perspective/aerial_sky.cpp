@@ -84,7 +84,8 @@ void AerialSky::make_compose() {
   Frames& frames = *frames_;
   const Relief& relief = *frames.relief;
   gpu::Specialization constants = frames.inputs->variant();
-  constants.push_back(static_cast<uint32_t>(context_.settings.integer("aerial.march_slices")));
+  constants.insert(constants.end(), {static_cast<uint32_t>(context_.settings.integer("aerial.march_slices")),
+                                     context_.settings.choice("terrain.edges") == "on"});
   std::vector<gpu::Binding> bindings = frames.inputs->bindings();
   if (frames.aerial) bindings.insert(bindings.end(), {{3, kSampled}, {4, kSampled}});
   bindings.insert(bindings.end(), {{5, kImage}, {6, kSampled}, {7, kSampled}, {8, kImage}, {9, kImage}});

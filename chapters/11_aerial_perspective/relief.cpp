@@ -74,6 +74,11 @@ std::vector<Knob> terrain_knobs() {
            .meaning = "relief finer than the map's where a ray meets the ground within 250 m",
            .initial = 1,
            .choices = {"off", "on"},
+           .rebuilds = true},
+          {.name = "terrain.edges",
+           .meaning = "a crest that a ray passes by less than half a pixel covers a part of it, or nothing",
+           .initial = 1,
+           .choices = {"off", "on"},
            .rebuilds = true}};
 }
 // [/knobs]

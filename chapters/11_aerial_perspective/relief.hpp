@@ -13,7 +13,7 @@
 
 namespace welkin {
 
-std::vector<Knob> terrain_knobs();  // terrain.shadow_size
+std::vector<Knob> terrain_knobs();  // terrain.shadow_size, .detail, .edges
 
 // Where a frame's camera stands, and its frame of east, north and up; km, global frame. Not below `least_km` above
 // ground.

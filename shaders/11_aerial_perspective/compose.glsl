@@ -4,6 +4,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "11_aerial_perspective/block.glsl"
 
 layout(constant_id = 22) const int MARCH_SLICES = 64;
+layout(constant_id = 23) const bool HAS_EDGES = true;
 
 #if FROXELS
 layout(binding = 3) uniform sampler3D glows;
@@ -83,7 +84,7 @@ void main() {
   SignSeen sign;
   sign.share = 0.0;
   if (north.w > -100.0) sign = sign_before(air.ground_radius_km, position.xyz, direction, terrain.x > 0.0 ? terrain.x : 1.0e9, north.w, pixel_rad);
-  const vec3 shares = vec3(terrain.x > 0.0 ? 1.0 : 0.0, terrain.z, sign.share);
+  const vec3 shares = vec3(terrain.x > 0.0 ? 1.0 : 0.0, HAS_EDGES ? terrain.z : 0.0, sign.share);
   // Nearly all pixels have one of the three at most: a loop over those that are there.
   for (int layer = next_layer(shares, 0); layer < 3; layer = next_layer(shares, layer + 1)) {
     const float share = shares[layer];

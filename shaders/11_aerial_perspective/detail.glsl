@@ -69,7 +69,7 @@ Detail detail_at(vec2 place_km, float footprint_km) {
     else if (scale < 8) detail.grain += kept * 0.4 * (rough.x - 0.5);
     else detail.blades += kept * 0.4 * (rough.x - 0.5);
     if (scale < 10) detail.sharp += kept * 0.1;
-    if (scale >= 2) detail.tilt += vec2(rough.y, rough.z) * kept;  // wider slopes are the map's
+    if (scale >= 3) detail.tilt += vec2(rough.y, rough.z) * kept;  // wider slopes are the map's
     detail.tilt = turned(detail.tilt);
     place_km = turned(place_km);
     wave_km *= kFiner;
