@@ -7,8 +7,8 @@ layout(constant_id = 22) const int MARCH_SLICES = 64;
 layout(constant_id = 23) const bool HAS_EDGES = true;
 
 #if FROXELS
-layout(binding = 3) uniform sampler3D glows;
-layout(binding = 4) uniform sampler3D extinctions;
+layout(binding = 3) uniform sampler3D froxel_in_scattering;
+layout(binding = 4) uniform sampler3D froxel_extinction;
 #endif
 layout(binding = 5, rgba32f) uniform readonly image2D terrain_distance;
 layout(binding = 6) uniform sampler2D slope_map;
@@ -24,14 +24,14 @@ vec4 cover_at(vec2 uv) { return textureLod(cover_map, uv, 0.0); }
 // [froxel_light]
 // The air up to a distance from the froxels, filtered. place: 0 ... 1 over the picture.
 RayLight froxel_light(vec2 place, float t_km) {
-  const vec3 count = vec3(textureSize(glows, 0));
+  const vec3 count = vec3(textureSize(froxel_in_scattering, 0));
   const float s = slices_before(t_km, count.z, east.w, POWER);
   // Texel k holds the end of slice k: s = k + 1 is found at its centre. Before the first one the air is taken as that up to it.
   const vec3 uvw = vec3(0.5 / count.xy + place * (1.0 - 1.0 / count.xy), (max(s, 1.0) - 0.5) / count.z);
-  const vec4 stored = textureLod(glows, uvw, 0.0);
+  const vec4 stored = textureLod(froxel_in_scattering, uvw, 0.0);
   Froxel froxel;
-  froxel.glow = stored.rgb;
-  froxel.extinction = HAS_COLOUR ? textureLod(extinctions, uvw, 0.0).rgb : stored.aaa;
+  froxel.in_scattering = stored.rgb;
+  froxel.extinction = HAS_COLOUR ? textureLod(froxel_extinction, uvw, 0.0).rgb : stored.aaa;
   return light_before(froxel, t_km);
 }
 // [/froxel_light]

@@ -75,7 +75,7 @@ RayLight run(Atmosphere air, vec4 a, vec4 b, vec4 c) {
   RayLight light = RayLight(vec3(0.0), vec3(1.0));
   if (kind == 0) return march_to(method, ray, scattering, c.x, int(c.y), int(c.z), b.w);  // d, slices, samples, power
   if (kind == 1) {  // c.x of a first slice c.y long; c.z: taken as linear instead, as a sampler would
-    const Veil whole = behind(method, ray, scattering, no_veil(), 0.0, c.y, 2);
+    const AirSegment whole = append_segment(method, ray, scattering, no_air(), 0.0, c.y, 2);
     if (c.z == 0.0) return light_before(froxel_of(whole, c.y), c.x * c.y);
     light.radiance = whole.radiance;  // what the nearest texel holds
     light.transmittance = exp(-whole.depth);
