@@ -74,10 +74,6 @@ void write_file_atomically(const std::filesystem::path& file_name, std::string_v
   fail("cannot write '{}' ({} bytes): {}", name, contents.size(), std::strerror(error));
 }
 
-void write_file_atomically(const std::filesystem::path& target, std::span<const std::byte> contents) {
-  write_file_atomically(target, std::string_view(reinterpret_cast<const char*>(contents.data()), contents.size()));
-}
-
 std::string read_file(const std::filesystem::path& path, size_t max_bytes) {
   const std::string name = path.string();
   struct stat info {};

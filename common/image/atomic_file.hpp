@@ -1,9 +1,7 @@
 // Whole files in, whole files out: nothing half-written is ever seen under the target's name.
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -14,7 +12,6 @@ namespace welkin {
 // was, and Error says in one line what stood in the way (directory missing, target a directory or a device, no
 // permission, disk full). The directory is not made.
 void write_file_atomically(const std::filesystem::path& target, std::string_view contents);
-void write_file_atomically(const std::filesystem::path& target, std::span<const std::byte> contents);
 
 // The whole file as bytes. Error if it is missing, not a regular file, unreadable or larger than max_bytes.
 std::string read_file(const std::filesystem::path& file, size_t max_bytes);
