@@ -129,6 +129,7 @@ void Composition::rebuild() {
   }
   if (anything) connect();
 }
+// [/rebuild]
 
 void Composition::declare(uint32_t index) {
   State& state = states_[index];
@@ -139,6 +140,7 @@ void Composition::declare(uint32_t index) {
   ++state.declared;
 }
 
+// [connect]
 // The last picture is drawn into the target, all others into images of the graph's own; then everything is made.
 void Composition::connect() {
   if (target_ == nullptr && find<Picture>() != nullptr) return;  // set_target() follows
@@ -157,7 +159,7 @@ void Composition::connect() {
   graph_.set_output(displayed_resource_, displayed_ != nullptr && find<Displayed>() != nullptr);
   graph_.compile(size_);
 }
-// [/rebuild]
+// [/connect]
 
 void Composition::reload() {
   pipelines_.forget();
