@@ -1,4 +1,4 @@
-// The panel, with Dear ImGui 1.86 on its GLFW and Vulkan backends. See panel.hpp.
+// Dear ImGui 1.86 on its GLFW and Vulkan backends: what the panel is drawn with. What it shows is in panel_layout.cpp.
 #include "chapters/02_window/panel.hpp"
 
 #include <backends/imgui_impl_glfw.h>
@@ -7,12 +7,11 @@
 
 #include <algorithm>
 
-#include "common/measure/bench_json.hpp"
+#include "chapters/02_window/panel_layout.hpp"
+#include "common/app/session.hpp"
 
 namespace welkin {
 namespace {
-
-constexpr size_t kHistory = 120;
 
 void check_imgui(VkResult result) { gpu::check(result, "Dear ImGui"); }
 
@@ -48,32 +47,17 @@ gpu::RenderPass create_render_pass(const gpu::Device& device, VkFormat format) {
   return {device, pass};
 }
 
-bool knob_widget(const Knob& knob, Settings& settings) {
-  const double before = settings.number(knob.name);
-  double after = before;
-  if (!knob.choices.empty()) {
-    if (ImGui::BeginCombo(knob.name.c_str(), settings.choice(knob.name).c_str())) {
-      for (size_t i = 0; i < knob.choices.size(); ++i)
-        if (ImGui::Selectable(knob.choices[i].c_str(), before == static_cast<double>(i)))
-          after = static_cast<double>(i);
-      ImGui::EndCombo();
-    }
-  } else if (knob.integer) {
-    int value = static_cast<int>(before);
-    if (ImGui::SliderInt(knob.name.c_str(), &value, static_cast<int>(knob.minimum), static_cast<int>(knob.maximum),
-                         "%d", ImGuiSliderFlags_AlwaysClamp))
-      after = value;
-  } else {
-    float value = static_cast<float>(before);
-    if (ImGui::SliderFloat(knob.name.c_str(), &value, static_cast<float>(knob.minimum),
-                           static_cast<float>(knob.maximum), "%.3f", ImGuiSliderFlags_AlwaysClamp))
-      after = std::clamp(static_cast<double>(value), knob.minimum, knob.maximum);
-  }
-  if (ImGui::IsItemHovered())
-    ImGui::SetTooltip("%s%s%s", knob.meaning.c_str(), knob.unit.empty() ? "" : ", ", knob.unit.c_str());
-  if (after == before) return false;
-  settings.set_number(knob.name, after);
-  return true;
+constexpr size_t kHistory = 120;
+
+// The names that --scene takes for the scenes that come with the tree; none if they cannot be read.
+std::vector<std::string> shipped_scenes() {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (std::filesystem::directory_iterator i(app::scenes_directory(), error), end; !error && i != end;
+       i.increment(error))
+    if (i->path().extension() == ".toml") names.push_back(i->path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
 }
 
 }  // namespace
@@ -84,8 +68,9 @@ struct Panel::State {
   gpu::DescriptorPool pool;
   std::vector<gpu::Framebuffer> framebuffers;
   VkExtent2D size{};
-  std::array<float, kHistory> history{};
+  std::vector<float> history = std::vector<float>(kHistory);  // milliseconds a frame
   size_t next = 0;
+  std::vector<std::string> scenes = shipped_scenes();
 };
 
 Panel::Panel(GLFWwindow* window, const gpu::Instance& instance, const gpu::Device& device,
@@ -103,6 +88,7 @@ Panel::Panel(GLFWwindow* window, const gpu::Instance& instance, const gpu::Devic
 
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr;  // leaves no file behind
+  set_style();
   ImGui_ImplGlfw_InitForVulkan(window, true);
   ImGui_ImplVulkan_InitInfo info{};
   info.Instance = instance;
@@ -148,48 +134,17 @@ void Panel::swapchain_changed(const WindowSwapchain& swapchain) {
 bool Panel::wants_mouse() const { return ImGui::GetIO().WantCaptureMouse; }
 bool Panel::wants_keyboard() const { return ImGui::GetIO().WantTextInput; }
 
-void Panel::layout(const Chapter& chapter, const Scene& scene, Settings& settings, const gpu::Device& device,
+void Panel::layout(const Chapter& chapter, Scene& scene, Settings& settings, const gpu::Device& device,
                    const CameraPose& pose, PanelState& state) {
   ImGui_ImplVulkan_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   ImGui::NewFrame();
+  float total_ms = 0.0f;
+  for (const gpu::PassTime& pass : state.times) total_ms += static_cast<float>(pass.milliseconds);
+  state_->history[state_->next++ % kHistory] = total_ms;
   if (state.visible) {
-    ImGui::SetNextWindowPos({8, 8}, ImGuiCond_FirstUseEver);
-    ImGui::SetNextWindowSizeConstraints(
-        {0, 0}, {static_cast<float>(state_->size.width), static_cast<float>(state_->size.height) - 16.0f});
-    ImGui::Begin(fmt::format("{:02} {}", chapter.number, chapter.title).c_str(), nullptr,
-                 ImGuiWindowFlags_AlwaysAutoResize);
-    ImGui::PushTextWrapPos(340.0f);
-    ImGui::TextUnformatted(chapter.whats_new.c_str());
-    ImGui::TextDisabled(state.flying ? "F: back to the panel" : "F: fly (WASD, Space, Ctrl, Shift, mouse)");
-    ImGui::TextDisabled("R reload shaders  P screenshot  H hide  Esc quit");
-    if (chapter.truth && ImGui::Button("T: path-trace this view")) state.truth_asked = true;
-    ImGui::Text("altitude %.4g km\nazimuth %.1f, elevation %.1f", app::altitude_km(pose, scene.planet.ground_radius_km),
-                pose.azimuth_deg, pose.elevation_deg);
-    if (!settings.knobs().empty() && ImGui::CollapsingHeader("Knobs", ImGuiTreeNodeFlags_DefaultOpen))
-      for (const Knob& knob : settings.knobs())
-        if (knob_widget(knob, settings)) state.changed.push_back(knob.name);
-    if (chapter.sky) {
-      float hours = static_cast<float>(state.time_s / 3600.0);
-      if (ImGui::SliderFloat("time, hours from the scene's", &hours, -12.0f, 12.0f, "%.2f"))
-        state.time_s = 3600.0 * hours;
-    }
-    if (ImGui::CollapsingHeader("Time per pass", ImGuiTreeNodeFlags_DefaultOpen)) {
-      float total = 0.0f;
-      for (const gpu::PassTime& pass : state.times) {
-        ImGui::Text("%-16s %9.3f ms", pass.name.c_str(), pass.milliseconds);
-        total += static_cast<float>(pass.milliseconds);
-      }
-      state_->history[state_->next++ % kHistory] = total;
-      ImGui::PlotLines("total", state_->history.data(), static_cast<int>(kHistory),
-                       static_cast<int>(state_->next % kHistory), fmt::format("{:.3f} ms", total).c_str(), 0.0f,
-                       *std::max_element(state_->history.begin(), state_->history.end()) * 1.1f, {0, 48});
-      ImGui::Text("%s held on %s", measure::human_bytes(device.allocated_bytes()).c_str(),
-                  device.candidate().name.c_str());
-    }
-    if (!state.message.empty()) ImGui::TextUnformatted(state.message.c_str());
-    ImGui::PopTextWrapPos();
-    ImGui::End();
+    const PanelContext shown{chapter, scene, device, pose, state_->scenes, state_->history, state_->next % kHistory};
+    lay_out(shown, {static_cast<float>(state_->size.width), static_cast<float>(state_->size.height)}, settings, state);
   }
   ImGui::Render();
 }

@@ -1,4 +1,5 @@
-// The panel: chapter, knobs, sun, time per pass, memory. Everything of Dear ImGui is in panel.cpp.
+// The panel: scene, knobs, time per pass, memory. Dear ImGui is in panel.cpp (its set-up) and panel_layout.cpp (what is
+// shown) and nowhere else.
 #pragma once
 
 #include <array>
@@ -21,11 +22,14 @@ using app::Chapter;
 struct PanelState {
   bool visible = true;
   bool flying = false;
-  bool truth_asked = false;          // its button was pressed
-  std::string message;               // shader error, "saved …": shown until the next
-  std::vector<gpu::PassTime> times;  // of the last finished frame
-  double time_s = 0.0;               // scene time, moved by the slider
-  std::vector<std::string> changed;  // knobs changed since the last frame
+  std::vector<int> keys;              // whose buttons were pressed since the last frame
+  std::string scene_asked;            // a shipped scene that was chosen since the last frame
+  std::string view_asked;             // a view of the scene, likewise
+  std::string view_now;               // the view that was chosen last
+  float width = 0.0f, height = 0.0f;  // of the panel, in pixels; 0: not yet shown
+  std::string message;                // shader error, "saved …": shown until the next
+  std::vector<gpu::PassTime> times;   // of the last finished frame
+  std::vector<std::string> changed;   // knobs changed since the last frame
 };
 
 class Panel {
@@ -40,8 +44,8 @@ class Panel {
   bool wants_mouse() const;
   bool wants_keyboard() const;
 
-  // Lays the panel out; may change settings (recording names in state.changed) and the time.
-  void layout(const Chapter& chapter, const Scene& scene, Settings& settings, const gpu::Device& device,
+  // Lays the panel out; may change settings (recording names in state.changed) and the scene's time.
+  void layout(const Chapter& chapter, Scene& scene, Settings& settings, const gpu::Device& device,
               const CameraPose& pose, PanelState& state);
   // Draws over the image, which is in COLOR_ATTACHMENT_OPTIMAL and ends in PRESENT_SRC.
   void record(VkCommandBuffer commands, uint32_t image_index);

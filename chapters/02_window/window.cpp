@@ -17,6 +17,8 @@
 #include "common/app/session.hpp"
 #include "common/gpu/shader_file.hpp"
 #include "common/measure/metrics.hpp"
+#include "common/scene/one_line.hpp"
+#include "common/scene/path.hpp"
 #include "common/scene/scene_knobs.hpp"
 
 namespace welkin {
@@ -116,8 +118,9 @@ struct Loop {
   Panel panel;
   PanelState state;
   CameraPose pose;
-  bool cut = false;       // the next frame has nothing to do with the one before
-  gpu::CommandPool pool;  // for screenshots
+  bool cut = false;                // the next frame has nothing to do with the one before
+  std::optional<double> played_s;  // of the path that is shown, over and over until the camera is taken
+  gpu::CommandPool pool;           // for screenshots
 
   Loop(Session& s, Window& w, VkSurfaceKHR surface)
       : session(s),
@@ -130,7 +133,8 @@ struct Loop {
         panel(w.handle, s.instance, s.device, swapchain),
         pose(s.first_pose()),
         pool(gpu::create_command_pool(s.device)) {
-    state.time_s = s.options.time_s;
+    state.view_now = s.scene.view(s.options.view).name;
+    if (!s.options.path.empty()) played_s = 0.0;
     use_targets();
   }
   ~Loop() { swapchain.wait_for_presentation(); }
@@ -162,19 +166,48 @@ struct Loop {
   void restore(const std::string& file) {
     Scene scene;
     Settings settings;
-    load_scene_and_settings(session.chapter, file, {}, scene, settings);  // throws before anything here changes
+    load_scene_and_settings(session.chapter, file, {}, {}, scene, settings);  // throws before anything here changes
     swapchain.wait_for_all_frames();
     session.scene = std::move(scene);
     session.settings = std::move(settings);
-    pose = pose_of(session.scene.view(""));
-    state.time_s = 0.0;
+    pose = pose_of(session.scene.view(""), session.scene.planet.ground_radius_km);
+    state.view_now = session.scene.view("").name;
+    played_s.reset();  // a path of the scene before
     drawing.follow();
     cut = true;
   }
 
+  // What is asked for while a view stands may fail: the panel says why, and the view stays.
+  template <typename Action>
+  void attempt(Action&& action) {
+    try {
+      action();
+    } catch (const std::exception& error) {
+      state.message = one_line(error.what());
+      std::fprintf(stderr, "%s: %s\n", session.chapter.name.c_str(), state.message.c_str());
+    }
+  }
+  void say(const std::string& message) {
+    state.message = message;
+    std::printf("%s\n", message.c_str());
+    std::fflush(stdout);
+  }
+
+  void play(double seconds) {
+    if (!played_s) return;
+    const Path& path = session.scene.path(session.options.path);
+    const double length_s = path.time_s.back() - path.time_s.front();
+    played_s = std::fmod(*played_s + seconds, length_s);
+    const PathPoint point = point_on(session.scene, path, path.time_s.front() + *played_s);
+    session.scene.time_s = point.moment_s;
+    pose = pose_of(point.view, session.scene.planet.ground_radius_km);
+  }
+
   std::string error_of_what_is_shown() const;
-  void ask_truth();
+  void save_next();
+  void reload_shaders();
   void on_key(int key);
+  void do_what_was_asked();
   bool draw(uint32_t index, double seconds);
 };
 
@@ -194,7 +227,7 @@ std::string Loop::error_of_what_is_shown() const {
                       {session.device, scene, session.settings, session.options.inject}};
   const std::unique_ptr<Program> method = still.make_program();
   Renderer renderer(still.context, still.chapter, *method, kSize);
-  renderer.draw(pose, state.time_s, still.options.seed, 0);
+  renderer.draw(pose, scene.time_s, still.options.seed, 0);
   const Image truth = draw_truth(still, pose, kSize, 1), again = draw_truth(still, pose, kSize, 2);
   const auto as_it_is = [](const glm::vec3& value) { return value; };
   return fmt::format(
@@ -203,44 +236,59 @@ std::string Loop::error_of_what_is_shown() const {
       kSize.width, kSize.height, 100.0 * measure::compare(again, truth, as_it_is).relative_rmse);
 }
 
-void Loop::ask_truth() {
+// Into out/, under the next number that is free.
+void Loop::save_next() {
+  std::error_code error;
+  std::filesystem::create_directories("out", error);
+  if (error) fail("cannot save a picture: directory 'out': {}", error.message());
+  int number = 1;
+  const auto name = [&] { return fmt::format("out/{}_{:03}.png", session.chapter.name, number); };
+  while (std::filesystem::exists(name(), error)) ++number;
+  say("saved " + save(name()));
+}
+
+void Loop::reload_shaders() {
+  const std::string refusal = gpu::recompile_shaders(session.chapter.number);
+  if (!refusal.empty()) {
+    state.message = refusal;  // as many lines as the compiler wrote; the old pipelines stay
+    return;
+  }
   swapchain.wait_for_all_frames();
-  state.truth_asked = false;
-  state.message = error_of_what_is_shown();
-  fmt::print("{}\n", state.message);
-  std::fflush(stdout);
+  drawing.reload();
+  state.message = "shaders reloaded";
 }
 
 void Loop::on_key(int key) {
-  if (panel.wants_keyboard()) return;
   switch (key) {
     case GLFW_KEY_ESCAPE: glfwSetWindowShouldClose(window.handle, GLFW_TRUE); break;
     case GLFW_KEY_H: state.visible = !state.visible; break;
     case GLFW_KEY_F:
       state.flying = !state.flying;
+      played_s.reset();
       glfwSetInputMode(window.handle, GLFW_CURSOR, state.flying ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
       glfwGetCursorPos(window.handle, &window.mouse_x, &window.mouse_y);
       break;
-    case GLFW_KEY_P: {
-      std::filesystem::create_directories("out");
-      int number = 1;
-      const auto name = [&] { return fmt::format("out/{}_{:03}.png", session.chapter.name, number); };
-      while (std::filesystem::exists(name())) ++number;
-      state.message = "saved " + save(name());
-      fmt::print("{}\n", state.message);
-      std::fflush(stdout);
-      break;
-    }
-    case GLFW_KEY_T: ask_truth(); break;
-    case GLFW_KEY_R: {
-      state.message = gpu::recompile_shaders(session.chapter.number);
-      if (!state.message.empty()) break;  // the old pipeline stays
+    case GLFW_KEY_P: attempt([&] { save_next(); }); break;
+    case GLFW_KEY_R: attempt([&] { reload_shaders(); }); break;
+    case GLFW_KEY_T:
       swapchain.wait_for_all_frames();
-      drawing.reload();
-      state.message = "shaders reloaded";
+      attempt([&] { say(error_of_what_is_shown()); });
       break;
-    }
     default: break;
+  }
+}
+
+// Keys, buttons, what was chosen in the panel, dropped files: between two frames.
+void Loop::do_what_was_asked() {
+  if (!panel.wants_keyboard())
+    for (const int key : std::exchange(window.keys, {})) on_key(key);
+  window.keys.clear();
+  for (const int key : std::exchange(state.keys, {})) on_key(key);
+  if (!state.scene_asked.empty()) window.dropped.push_back(std::exchange(state.scene_asked, {}));
+  for (const std::string& file : std::exchange(window.dropped, {})) attempt([&] { restore(file); });
+  if (const std::string view = std::exchange(state.view_asked, {}); !view.empty()) {
+    pose = pose_of(session.scene.view(view), session.scene.planet.ground_radius_km);
+    state.view_now = view;
   }
 }
 
@@ -251,14 +299,13 @@ bool Loop::draw(uint32_t index, double seconds) {
   state.times = slot->timer.read();  // of this slot's earlier frame, finished now
   const VkExtent2D size = swapchain.size();
   const CameraRays camera =
-      camera_rays(pose, session.scene, state.time_s, {size.width, size.height}, session.options.seed, index);
+      camera_rays(pose, session.scene, session.scene.time_s, {size.width, size.height}, session.options.seed, index);
   state.changed.clear();
-  if (state.truth_asked) ask_truth();
   panel.layout(session.chapter, session.scene, session.settings, session.device, pose, state);
   if (!state.changed.empty()) apply_scene_knobs(session.settings, session.scene);
   if (drawing.stale()) {
     swapchain.wait_for_all_frames();
-    drawing.follow();
+    attempt([&] { drawing.follow(); });
   }
   gpu::begin_commands(slot->commands);
   drawing.record({slot->commands, targets.picture, camera, slot->timer, index, session.options.seed, seconds,
@@ -292,16 +339,10 @@ Exit run_window(Session& session) {
       continue;
     }
     if (window.resized) loop.resize();
-    for (const int key : std::exchange(window.keys, {})) loop.on_key(key);
-    for (const std::string& file : std::exchange(window.dropped, {})) {
-      try {
-        loop.restore(file);
-      } catch (const Error& error) {
-        loop.state.message = error.what();
-      }
-    }
+    loop.do_what_was_asked();
     const double now = glfwGetTime(), seconds = now - last;
     move_camera(window, loop.panel, loop.state, loop.pose, seconds, session.scene.planet.ground_radius_km);
+    loop.play(seconds);
     last = now;
     if (!loop.draw(index, index == 0 ? 0.0 : seconds)) {
       window.resized = true;

@@ -7,7 +7,7 @@
 
 namespace welkin {
 
-// rays.form, debug.view and camera.zoom; see main.cpp for what each is good for.
+// rays.form, debug.view, camera.zoom.
 std::vector<Knob> planet_knobs();
 
 class PlanetAndRays : public app::Program {

@@ -33,18 +33,7 @@ struct DisplayPush {
 
 // [knobs]
 std::vector<Knob> exposure_knobs() {
-  return {{.name = "exposure.mode",
-           .meaning = "metered, set by hand (exposure.ev), or as the scene says",
-           .initial = 0,
-           .choices = {"scene", "auto", "manual"},
-           .rebuilds = true},
-          {.name = "exposure.compensation",
-           .unit = "stops",
-           .meaning = "added to the metered exposure, beside the scene's",
-           .minimum = -10.0,
-           .maximum = 10.0,
-           .initial = 0.0},
-          {.name = "exposure.adaptation",
+  return {{.name = "exposure.adaptation",
            .meaning = "share of the way to middle grey the meter goes; 1: every scene equally bright",
            .minimum = 0.0,
            .maximum = 1.0,
@@ -100,11 +89,6 @@ std::vector<Knob> display_knobs() {
 }
 // [/knobs]
 
-bool metered(const Scene& scene, const Settings& settings) {
-  const std::string& mode = settings.choice("exposure.mode");
-  return mode == "scene" ? !scene.post.manual : mode == "auto";
-}
-
 // [share]
 double adapted_share(double seconds, double tau_s) { return tau_s > 0.0 ? -std::expm1(-seconds / tau_s) : 1.0; }
 // [/share]
@@ -146,7 +130,7 @@ static graph::Pass exposure_pass(const app::Context& context, graph::Resource hi
                           const auto share = [&](const char* knob) {
                             return static_cast<float>(adapted_share(r.frame.seconds, settings.number(knob)));
                           };
-                          const bool snap = r.frame.index == 0 || std::exchange(fresh, false);
+                          const bool first = std::exchange(fresh, false), snap = r.frame.index == 0 || first;
                           r.push(ExposePush{.low = number("exposure.low"),
                                             .high = number("exposure.high"),
                                             .to_bright = share("exposure.to_bright_s"),
@@ -163,10 +147,9 @@ static graph::Pass exposure_pass(const app::Context& context, graph::Resource hi
 // [exposure]
 app::Effect exposure() {
   app::Effect effect{.name = "exposure", .chapter = 6, .knobs = exposure_knobs()};
-  effect.wanted = [](const Scene& scene, const Settings& settings) {
-    const char* who = settings.choice("exposure.mode") != "scene" ? "exposure.mode" : "the scene's [post]";
-    return metered(scene, settings) ? app::Wanted{true, fmt::format("{} asks for the light meter", who)}
-                                    : app::Wanted{false, fmt::format("{} sets the exposure by hand", who)};
+  effect.wanted = [](const Scene& scene, const Settings&) -> app::Wanted {
+    if (scene.post.manual) return {false, "post.exposure is manual: set by hand"};
+    return {true, "post.exposure is auto: the light meter"};
   };
   effect.declare = [](app::Builder& builder, app::Board& board) {
     const graph::Resource picture = board.get<app::Picture>("a picture").image;
@@ -196,8 +179,7 @@ app::Effect display() {
     if (meter != nullptr) step.bindings.push_back({"State", meter->state});
     step.record = [context = builder.context, picture, metered = meter != nullptr](const graph::Recorder& r) {
       const Post& post = context.scene.post;
-      const double stops = metered ? post.compensation_ev + context.settings.number("exposure.compensation")
-                                   : kBaseLog2 + post.exposure_ev;
+      const double stops = metered ? post.compensation_ev : kBaseLog2 + post.exposure_ev;
       const VkExtent2D size = r.graph.image(picture).size;
       r.push(DisplayPush{{static_cast<int32_t>(size.width), static_cast<int32_t>(size.height)},
                          static_cast<float>(stops)});

@@ -15,9 +15,6 @@ namespace welkin {
 std::vector<Knob> exposure_knobs();  // exposure.*
 std::vector<Knob> display_knobs();   // display.*
 
-// The scene's `[post] exposure`, unless the knob exposure.mode says otherwise.
-bool metered(const Scene& scene, const Settings& settings);
-
 // What the meter found, as it lies in its buffer.
 struct ExposureState {
   float exposure;     // log2 of the factor light is multiplied by, before compensation

@@ -135,17 +135,17 @@ app::Effect aerial_perspective() {
     const uint32_t side = static_cast<uint32_t>(context.settings.integer("froxels.size")),
                    slices = static_cast<uint32_t>(context.settings.integer("froxels.slices"));
     // 32 bits: at dusk radiance is 1e-6 of noon's, where a half has two or three digits left of its three.
-    const graph::ImageInfo grid{.size = {side, side}, .depth = slices}, nothing{.size = {1, 1}, .depth = 1};
+    const graph::ImageInfo grid{.size = {side, side}, .depth = slices};
     const bool colour = per_channel(context.settings);
     const graph::Resource in_scattering = builder.graph.add_image("froxels", grid);
-    const graph::Resource extinction = builder.graph.add_image("froxel extinction", colour ? grid : nothing);
-    board.offer(Froxels{in_scattering, colour ? extinction : in_scattering});
+    const graph::Resource extinction = colour ? builder.graph.add_image("froxel extinction", grid) : in_scattering;
+    board.offer(Froxels{in_scattering, extinction});
 
     const int threads = threads_of(context);
-    graph::Step step = aerial_step(context, board, "froxels.comp");
+    graph::Step step = aerial_step(context, board, colour ? "froxels.comp" : "froxels_mean.comp");
     step.constants.push_back({"THREADS", threads});
     step.bindings.push_back({"glows", in_scattering});
-    step.bindings.push_back({"extinctions", extinction});
+    if (colour) step.bindings.push_back({"extinctions", extinction});
     const auto seen = std::make_shared<ViewChange>();
     const auto reach_km = std::make_shared<float>(0.0f);
     step.record = [context, seen, reach_km, side,

@@ -5,15 +5,13 @@
 #include <cmath>
 
 #include "common/error.hpp"
-#include "common/image/atomic_file.hpp"
 #include "common/image/png.hpp"
 #include "common/scene/one_line.hpp"
 
 namespace welkin {
 namespace {
 
-constexpr int kLargestSide = 4096;
-constexpr size_t kLargestFile = 256u << 20;  // bytes
+constexpr uint32_t kLargestSide = 4096;
 
 double smooth_step(double from, double to, double x) {
   const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
@@ -94,29 +92,23 @@ std::vector<float> make_heights(const Terrain& terrain) {
 
 // [read]
 std::vector<float> read_heights(const Terrain& terrain, int& size) {
-  const std::string name = one_line(terrain.height_map);
   constexpr const char* accepted = "accepted is a square 16-bit grayscale PNG of 2 to 4096 samples a side";
-  // The header first: decoders widen 8-bit files silently, and a height map of 256 steps is a staircase.
-  const std::string bytes = read_file(terrain.height_map, kLargestFile);
-  const auto big_endian = [&](size_t at) {
-    uint32_t value = 0;
-    for (size_t i = 0; i < 4; ++i) value = value << 8 | static_cast<uint8_t>(bytes[at + i]);
-    return value;
-  };
-  if (bytes.size() < 33 || bytes.compare(1, 3, "PNG") != 0 || bytes.compare(12, 4, "IHDR") != 0)
-    fail("height map {}: not a PNG file; {}", name, accepted);
-  const uint32_t width = big_endian(16), height = big_endian(20);
-  const int depth = bytes[24], colour = bytes[25];
-  if (depth != 16 || colour != 0)
-    fail("height map {}: {} bits a sample, {}; {}", name, depth, colour == 0 ? "grayscale" : "not grayscale alone",
-         accepted);
-  if (width != height) fail("height map {}: {} x {} samples, not square; {}", name, width, height, accepted);
-  if (width < 2 || width > kLargestSide) fail("height map {}: {} samples a side; {}", name, width, accepted);
-  const Image16 picture = image::read_png16(terrain.height_map);
-  size = static_cast<int>(width);
-  std::vector<float> heights(size_t{width} * width);
-  for (size_t i = 0; i < heights.size(); ++i)
-    heights[i] = static_cast<float>(picture.rgb[3 * i] / 65535.0 * terrain.height_km);
+  Image16 picture;
+  try {
+    picture = image::read_png16(terrain.height_map);  // 8 bits are refused: a map of 256 steps is a staircase
+  } catch (const Error& error) {
+    fail("height map: {}; {}", one_line(error.what()), accepted);
+  }
+  const std::string name = one_line(terrain.height_map);
+  if (picture.width != picture.height)
+    fail("height map: {}: {} x {} samples, not square; {}", name, picture.width, picture.height, accepted);
+  if (picture.width < 2 || picture.width > kLargestSide)
+    fail("height map: {}: {} samples a side; {}", name, picture.width, accepted);
+  size = static_cast<int>(picture.width);
+  std::vector<float> heights;
+  heights.reserve(picture.gray.size());
+  for (const uint16_t sample : picture.gray)
+    heights.push_back(static_cast<float>(sample / 65535.0 * terrain.height_km));
   return heights;
 }
 // [/read]

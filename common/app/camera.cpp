@@ -15,10 +15,16 @@ glm::dvec3 planet_centre(double ground_radius_km) { return {0.0, 0.0, -ground_ra
 
 }  // namespace
 
-CameraPose pose_of(const View& view) {
-  return {.position_km = {0.0, 0.0, view.altitude_km},
+CameraPose pose_of(const View& view, double ground_radius_km) {
+  // Up at the end of an arc of `angle` from the scene's place; r cos(angle) - R, written so that altitude keeps its
+  // digits.
+  const double arc_km = std::hypot(view.east_km, view.north_km), angle = arc_km / ground_radius_km;
+  const double across = arc_km > 0.0 ? (ground_radius_km + view.altitude_km) * std::sin(angle) / arc_km : 0.0;
+  const double half = std::sin(0.5 * angle);
+  return {.position_km = {across * view.east_km, across * view.north_km,
+                          view.altitude_km * std::cos(angle) - 2.0 * ground_radius_km * half * half},
           .azimuth_deg = view.azimuth_deg,
-          .elevation_deg = std::clamp(view.elevation_deg, -89.9, 89.9),
+          .elevation_deg = view.elevation_deg,
           .fov_deg = view.fov_deg};
 }
 
@@ -44,7 +50,7 @@ glm::dvec3 direction_from(double zenith_deg, double azimuth_deg) {
 
 void turn(CameraPose& pose, double azimuth_deg, double elevation_deg) {
   pose.azimuth_deg = std::fmod(pose.azimuth_deg + azimuth_deg + 720.0, 360.0);
-  pose.elevation_deg = std::clamp(pose.elevation_deg + elevation_deg, -89.9, 89.9);
+  pose.elevation_deg = std::clamp(pose.elevation_deg + elevation_deg, -90.0, 90.0);
 }
 
 void fly(CameraPose& pose, const glm::dvec3& axes, double seconds, bool fast, double ground_radius_km) {
@@ -55,8 +61,13 @@ void fly(CameraPose& pose, const glm::dvec3& axes, double seconds, bool fast, do
   const glm::dvec3 right = direction_from(90.0, pose.azimuth_deg + 90.0);
   const glm::dvec3 local = right * axes.x + look * axes.y + glm::dvec3(0.0, 0.0, axes.z);
   pose.position_km += (frame.east * local.x + frame.north * local.y + frame.up * local.z) * speed_km_s * seconds;
-  const double now = altitude_km(pose, ground_radius_km);
-  if (now < kLowest_km) pose.position_km += local_frame(pose, ground_radius_km).up * (kLowest_km - now);
+  const double now = altitude_km(pose, ground_radius_km), right_km = std::clamp(now, kLowest_km, kHighest_km);
+  const LocalFrame there = local_frame(pose, ground_radius_km);
+  pose.position_km += there.up * (right_km - now);
+  // The heading, level, as it was: but seen from the new frame.
+  const glm::dvec3 ahead = glm::cross(there.up, frame.east * right.x + frame.north * right.y);
+  const double azimuth_deg = glm::degrees(std::atan2(glm::dot(ahead, there.east), glm::dot(ahead, there.north)));
+  pose.azimuth_deg = std::fmod(azimuth_deg + 360.0, 360.0);
 }
 
 SunPlace advance_sun(double zenith_deg, double azimuth_deg, double latitude_deg, double seconds) {
@@ -76,7 +87,8 @@ CameraRays camera_rays(const CameraPose& pose, const Scene& scene, double time_s
                        uint32_t frame) {
   const double radius = scene.planet.ground_radius_km;
   const LocalFrame local = local_frame(pose, radius);
-  const SunPlace place = advance_sun(scene.sun.zenith_deg, scene.sun.azimuth_deg, scene.sun.latitude_deg, time_s);
+  const SunPlace place =
+      advance_sun(scene.sun.zenith_deg, scene.sun.azimuth_deg, scene.sun.latitude_deg.value_or(0.0), time_s);
   const glm::dvec3 sun = direction_from(place.zenith_deg, place.azimuth_deg);  // in the frame of the scene's place
   const glm::dvec3 forward = direction_from(90.0 - pose.elevation_deg, pose.azimuth_deg);
   const glm::dvec3 right = direction_from(90.0, pose.azimuth_deg + 90.0);
@@ -97,8 +109,13 @@ CameraRays camera_rays(const CameraPose& pose, const Scene& scene, double time_s
 }
 
 View view_of(const CameraPose& pose, double ground_radius_km) {
-  return {.name = "restored",
-          .altitude_km = altitude_km(pose, ground_radius_km),
+  const glm::dvec3& p = pose.position_km;
+  const double across = std::hypot(p.x, p.y), arc_km = ground_radius_km * std::atan2(across, p.z + ground_radius_km);
+  const bool away = across > 0.0;  // straight below the place the way there is any way: north
+  return {.name = kRestoredView,
+          .east_km = away ? arc_km * p.x / across : 0.0,
+          .north_km = away ? arc_km * p.y / across : arc_km,
+          .altitude_km = std::clamp(altitude_km(pose, ground_radius_km), 0.0, kHighest_km),
           .azimuth_deg = pose.azimuth_deg,
           .elevation_deg = pose.elevation_deg,
           .fov_deg = pose.fov_deg};

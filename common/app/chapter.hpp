@@ -18,10 +18,12 @@ namespace welkin::app {
 // How a picture becomes 8 bits until chapter 06 teaches it: values as they are, or 1 - exp(-exposure L) and sRGB.
 enum class Display { raw, exposed };
 
-// A picture a chapter is measured and tested by.
+// A picture a chapter is measured and tested by: a view, or frame `frame` of a path that is drawn in `frames` frames,
+// after all those before it.
 struct StandardView {
   std::string scene;
-  std::string view;
+  std::string view;  // or the path
+  uint32_t frame = 0, frames = 0;
 };
 
 // An unbiased method of a lower chapter that a method is measured against, with knobs of its own.
@@ -61,6 +63,9 @@ struct Chapter {
   ProbeFunction probe;                                           // radiance along rays, beside effects
   std::function<std::unique_ptr<Program>(const Context&)> make;  // instead of effects: a program of its own
 };
+
+// Whether its pictures go through a light meter: the scene's exposure can then be automatic.
+bool has_meter(const Chapter& chapter);
 
 // The chapter's program: a composition of its effects, or its own.
 std::unique_ptr<Program> make_program(const Chapter& chapter, const Context& context);

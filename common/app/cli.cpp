@@ -13,6 +13,7 @@ namespace welkin::app {
 namespace {
 
 constexpr uint32_t kMaximumSide = 16384;
+constexpr uint32_t kMaximumSupersample = 8;
 
 VkExtent2D parse_size(const std::string& text) {
   const size_t cross = text.find('x');
@@ -59,34 +60,36 @@ std::string footer(const Chapter& chapter) {
   if (chapter.sky) {
     Scene scene;
     scene.media.push_back({.kind = "mie", .phase = Phase::cornette_shanks, .g = 0.8});
-    text += "\n" +
-            describe_knobs("Of the scene (default: what the scene says; here the neutral values):", scene_knobs(scene));
+    text += "\n" + describe_knobs("Of the scene (default: what the scene says; here the neutral values):",
+                                  scene_knobs(scene, has_meter(chapter)));
   }
   return text +
          "\nExit codes: 0 ok, 1 mismatch, 2 usage or bad input, 3 validation message, 77 skipped (no Vulkan device).";
 }
 
-}  // namespace
-
-bool parse_options(int argc, char** argv, const Chapter& chapter, Options& options) {
-  CLI::App cli{fmt::format("Welkin {:02}: {}\n{}", chapter.number, chapter.title, chapter.whats_new), chapter.name};
-  cli.footer(footer(chapter));
-  std::string size, validation, golden;
-  std::string frames_text, seed_text, time_text;
+// What is text on the command line and something else in Options.
+struct Texts {
+  std::string size, validation, golden, frames, seed, time, supersample;
   std::vector<std::string> set, dump;
+};
 
+void add_device_options(CLI::App& cli, Options& options, Texts& texts) {
   cli.add_flag("--list-gpus", options.list_gpus, "List the Vulkan devices and stop")->group("device");
   cli.add_option("--gpu", options.gpu, "Device to use: its number in --list-gpus or part of its name")
       ->type_name("N|NAME")
       ->group("device");
-  cli.add_option("--validation", validation, "Validation layers: off, on, sync")
+  cli.add_option("--validation", texts.validation, "Validation layers: off, on, sync")
       ->type_name("off|on|sync")
       ->group("device");
   cli.add_flag("--require-gpu", options.require_gpu, "No Vulkan device is an error (exit 2), not a skip (exit 77)")
       ->group("device");
+}
+
+void add_picture_options(CLI::App& cli, Options& options, Texts& texts, const Chapter& chapter) {
   cli.add_flag("--headless", options.headless, "Draw without a window, into a file")->group("picture");
-  cli.add_option("--size", size, "Picture size in pixels [1280x720]")->type_name("WxH")->group("picture");
-  cli.add_option("--frames", frames_text, "Frames to draw, then stop [headless 1; window: until closed]")
+  cli.add_option("--size", texts.size, "Picture size in pixels [1280x720]")->type_name("WxH")->group("picture");
+  cli.add_option("--frames", texts.frames,
+                 "Frames to draw, then stop [headless 1, of a path 24 a second; window: until closed]")
       ->type_name("N")
       ->group("picture");
   cli.add_option("--scene", options.scene,
@@ -94,19 +97,30 @@ bool parse_options(int argc, char** argv, const Chapter& chapter, Options& optio
       ->type_name("NAME|FILE")
       ->group("picture");
   cli.add_option("--view", options.view, "View of the scene [its first]")->type_name("NAME")->group("picture");
-  cli.add_option("--set", set, "Set a knob (repeatable)")
+  cli.add_option("--path", options.path, "Moving camera: a [[path]] of the scene, or the first of another scene file")
+      ->type_name("NAME|FILE")
+      ->group("picture");
+  cli.add_option("--set", texts.set, "Set a knob (repeatable)")
       ->type_name("key=value")
       ->allow_extra_args(false)
       ->group("picture");
-  cli.add_option("--seed", seed_text, "Seed of everything random [1]")->type_name("N")->group("picture");
-  cli.add_option("--time", time_text, "Seconds after the scene's moment: the sun moves 15 degrees an hour [0]")
+  cli.add_option("--seed", texts.seed, "Seed of everything random [1]")->type_name("N")->group("picture");
+  cli.add_option("--time", texts.time,
+                 "Seconds after the moment of the sun's angles: it moves 15 degrees an hour [the scene's]")
       ->type_name("T")
       ->group("picture");
+}
+
+void add_output_options(CLI::App& cli, Options& options, Texts& texts, const Chapter& chapter) {
   cli.add_option("--output", options.output,
                  "Write the (last) picture: .png displayed, .exr linear [out/" + chapter.name + ".png]")
       ->type_name("FILE")
       ->group("output");
-  cli.add_option("--dump", dump,
+  cli.add_option("--supersample", texts.supersample,
+                 "Draw the picture N times as large each way and average it, without a window [1]")
+      ->type_name("N")
+      ->group("output");
+  cli.add_option("--dump", texts.dump,
                  "Write 'picture' (.exr), 'displayed' (.png), 'knobs' (.json)" +
                      (chapter.images.empty() ? std::string()
                                              : fmt::format(", or an image (.exr, or .png as exposed): {}",
@@ -116,6 +130,9 @@ bool parse_options(int argc, char** argv, const Chapter& chapter, Options& optio
       ->group("output");
   cli.add_flag("--explain", options.explain, "Say which effects are simulated, why, with passes, bytes and time")
       ->group("output");
+}
+
+void add_measure_options(CLI::App& cli, Options& options) {
   cli.add_option("--bench", options.bench, "Measure repeated frames and write JSON")
       ->type_name("FILE.json")
       ->group("measure");
@@ -132,14 +149,20 @@ bool parse_options(int argc, char** argv, const Chapter& chapter, Options& optio
   cli.add_option("--against", options.against, "Print the errors of the picture against this one")
       ->type_name("FILE.exr")
       ->group("measure");
-  cli.add_option("--golden", golden, "Compare the standard views with the goldens, or write them anew")
+}
+
+void add_test_options(CLI::App& cli, Options& options, Texts& texts) {
+  cli.add_option("--golden", texts.golden, "Compare the standard views with the goldens, or write them anew")
       ->type_name("check|update")
       ->group("tests");
   cli.add_option("--inject", options.inject,
                  "Plant a fault: nan, missing-barrier, graph-barrier, wrong-constant, missing-feature")
       ->type_name("FAULT")
       ->group("tests");
+}
 
+// False if --help is all that was asked.
+bool parse_line(CLI::App& cli, int argc, char** argv) {
   try {
     cli.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
@@ -149,55 +172,79 @@ bool parse_options(int argc, char** argv, const Chapter& chapter, Options& optio
     std::string line = error.what();
     std::replace_if(
         line.begin(), line.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
-    fail("{}; see {} --help", line, chapter.name);
+    fail("{}; see {} --help", line, cli.get_name());
   }
 
   for (const CLI::Option* option : cli.get_options())
     for (const std::string& value : option->results())
-      if (value.empty()) fail("{}: the value is empty; see {} --help", option->get_name(), chapter.name);
-  const int modes = !options.bench.empty() + !options.sweep.empty() + !options.probe.empty() + !golden.empty() +
-                    options.list_gpus + (options.explain || !options.against.empty() || !dump.empty());
+      if (value.empty()) fail("{}: the value is empty; see {} --help", option->get_name(), cli.get_name());
+  return true;
+}
+
+void check_combination(const Options& options, const Texts& texts) {
+  const int modes = !options.bench.empty() + !options.sweep.empty() + !options.probe.empty() + !texts.golden.empty() +
+                    options.list_gpus + (options.explain || !options.against.empty() || !texts.dump.empty());
   if (modes > 1)
     fail(
         "one thing at a time: --list-gpus, --bench, --sweep, --probe, --golden, or a picture with --explain, --dump, "
         "--against");
-  if (!golden.empty() && (!set.empty() || (golden == "update" && !options.inject.empty())))
+  if (!texts.golden.empty() && (!texts.set.empty() || (texts.golden == "update" && !options.inject.empty())))
     fail("--golden draws the standard views as they are: without --set, and --golden update without --inject");
+}
 
-  const auto whole = [](const char* option, const std::string& text, double low, double high) {
-    double value = 0.0;
-    if (!parse_number(text, value) || value < low || value > high || value != std::floor(value))
-      fail("{} {}: expected a whole number from {:.0f} to {:.0f}", option, text, low, high);
-    return static_cast<uint32_t>(value);
-  };
-  if (!size.empty()) options.size = parse_size(size), options.size_given = true;
-  if (cli.count("--size") > 0 && size.empty()) parse_size(size);
-  if (cli.count("--frames") > 0) options.frames = whole("--frames", frames_text, 1, 1000000);
-  if (cli.count("--seed") > 0) options.seed = whole("--seed", seed_text, 0, 2147483647);
-  if (cli.count("--time") > 0 && (!parse_number(time_text, options.time_s) || std::abs(options.time_s) > 1e9))
-    fail("--time {}: expected seconds from -1e9 to 1e9", time_text);
+uint32_t parse_whole(const char* option, const std::string& text, double low, double high) {
+  double value = 0.0;
+  if (!parse_number(text, value) || value < low || value > high || value != std::floor(value))
+    fail("{} {}: expected a whole number from {:.0f} to {:.0f}", option, text, low, high);
+  return static_cast<uint32_t>(value);
+}
+
+// From texts to options, each checked by itself.
+void take_texts(const CLI::App& cli, Options& options, const Texts& texts) {
+  if (!texts.size.empty()) options.size = parse_size(texts.size), options.size_given = true;
+  if (cli.count("--size") > 0 && texts.size.empty()) parse_size(texts.size);
+  if (cli.count("--frames") > 0) options.frames = parse_whole("--frames", texts.frames, 1, 1000000);
+  if (cli.count("--supersample") > 0) {
+    options.supersample = parse_whole("--supersample", texts.supersample, 1, kMaximumSupersample);
+    options.headless = true;
+    if (options.list_gpus || !options.bench.empty() || !options.sweep.empty() || !options.probe.empty() ||
+        !texts.golden.empty())
+      fail("--supersample is for pictures: not with --list-gpus, --bench, --sweep, --probe or --golden");
+  }
+  if (cli.count("--seed") > 0) options.seed = parse_whole("--seed", texts.seed, 0, 2147483647);
+  if (cli.count("--time") > 0 &&
+      (!parse_number(texts.time, options.time_s.emplace()) || std::abs(*options.time_s) > 1e9))
+    fail("--time {}: expected seconds from -1e9 to 1e9", texts.time);
+  if (!options.path.empty() && !options.view.empty())
+    fail("--path {} beside --view {}: one of the two", options.path, options.view);
   if (cli.count("--validation") > 0)
     options.validation = parse_choice<gpu::Validation>(
-        "--validation", validation,
+        "--validation", texts.validation,
         {{"off", gpu::Validation::off}, {"on", gpu::Validation::on}, {"sync", gpu::Validation::sync}});
   if (cli.count("--golden") > 0)
-    options.golden = parse_choice<Golden>("--golden", golden, {{"check", Golden::check}, {"update", Golden::update}});
+    options.golden =
+        parse_choice<Golden>("--golden", texts.golden, {{"check", Golden::check}, {"update", Golden::update}});
   if (cli.count("--inject") > 0)
     parse_choice<int>(
         "--inject", options.inject,
         {{"nan", 0}, {"missing-barrier", 0}, {"graph-barrier", 0}, {"wrong-constant", 0}, {"missing-feature", 0}});
-  for (const std::string& assignment : set) options.set.push_back(split_assignment(assignment));
-  if (!dump.empty()) {
-    std::vector<std::pair<std::string, int>> known{{"picture", 0}, {"displayed", 0}, {"knobs", 0}};
-    for (const std::string& image : chapter.images) known.emplace_back(image, 0);
-    parse_choice<int>("--dump", dump[0], known);
-    options.dump_what = dump[0], options.dump_file = dump[1];
-    const std::string extension = dump[0] == "knobs" ? ".json" : dump[0] == "displayed" ? ".png" : ".exr";
-    const bool shown = dump[0] != "picture" && extension == ".exr" && options.dump_file.ends_with(".png");
-    if (!options.dump_file.ends_with(extension) && !shown)
-      fail("--dump {} {}: the name must end in {}", dump[0], dump[1], extension);
-  }
-  // Where results go is looked at before the work is done, not after.
+  for (const std::string& assignment : texts.set) options.set.push_back(split_assignment(assignment));
+}
+
+void take_dump(const Chapter& chapter, Options& options, const std::vector<std::string>& dump) {
+  if (dump.empty()) return;
+  std::vector<std::pair<std::string, int>> known{{"picture", 0}, {"displayed", 0}, {"knobs", 0}};
+  for (const std::string& image : chapter.images) known.emplace_back(image, 0);
+  parse_choice<int>("--dump", dump[0], known);
+  options.dump_what = dump[0], options.dump_file = dump[1];
+  const std::string extension = dump[0] == "knobs" ? ".json" : dump[0] == "displayed" ? ".png" : ".exr";
+  const bool shown = dump[0] != "picture" && extension == ".exr" && options.dump_file.ends_with(".png");
+  if (!options.dump_file.ends_with(extension) && !shown)
+    fail("--dump {} {}: the name must end in {}", dump[0], dump[1], extension);
+}
+
+// Where results go is looked at before the work is done, not after.
+void check_files(const Options& options) {
   for (const std::string& file : {options.output, options.dump_file, options.bench, options.sweep, options.probe_out}) {
     if (file.empty()) continue;
     const std::filesystem::path target(file), parent = target.has_parent_path() ? target.parent_path() : ".";
@@ -209,6 +256,24 @@ bool parse_options(int argc, char** argv, const Chapter& chapter, Options& optio
   if (options.probe.empty() != options.probe_out.empty()) fail("--probe RAYS.csv and --probe-out FILE.csv go together");
   if (!options.output.empty() && !options.output.ends_with(".png") && !options.output.ends_with(".exr"))
     fail("--output {}: the name must end in .png or .exr", options.output);
+}
+
+}  // namespace
+
+bool parse_options(int argc, char** argv, const Chapter& chapter, Options& options) {
+  CLI::App cli{fmt::format("Welkin {:02}: {}\n{}", chapter.number, chapter.title, chapter.whats_new), chapter.name};
+  cli.footer(footer(chapter));
+  Texts texts;
+  add_device_options(cli, options, texts);
+  add_picture_options(cli, options, texts, chapter);
+  add_output_options(cli, options, texts, chapter);
+  add_measure_options(cli, options);
+  add_test_options(cli, options, texts);
+  if (!parse_line(cli, argc, argv)) return false;
+  check_combination(options, texts);
+  take_texts(cli, options, texts);
+  take_dump(chapter, options, texts.dump);
+  check_files(options);
   return true;
 }
 

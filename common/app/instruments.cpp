@@ -12,7 +12,9 @@
 #include "common/image/csv.hpp"
 #include "common/image/display.hpp"
 #include "common/image/exr.hpp"
+#include "common/image/png.hpp"
 #include "common/measure/bench_json.hpp"
+#include "common/measure/compare.hpp"
 #include "common/measure/metrics.hpp"
 #include "common/measure/sweep.hpp"
 #include "common/scene/scene_knobs.hpp"
@@ -45,8 +47,8 @@ struct Timings {
 };
 
 // Warm-up (on hardware for kWarmUpSeconds at least), then repeated frames until `repeats` or kTimedSeconds, at least 3.
-Timings time_frames(const Session& session, Renderer& renderer, const CameraPose& pose, uint32_t warm_up,
-                    uint32_t repeats) {
+// Of a path its frames, over and over.
+Timings time_frames(const Session& session, Renderer& renderer, uint32_t warm_up, uint32_t repeats) {
   using Clock = std::chrono::steady_clock;
   const auto seconds_since = [](Clock::time_point then) {
     return std::chrono::duration<double>(Clock::now() - then).count();
@@ -54,14 +56,14 @@ Timings time_frames(const Session& session, Renderer& renderer, const CameraPose
   const double wait = session.device.candidate().software ? 0.0 : kWarmUpSeconds;
   const Clock::time_point begin = Clock::now();
   for (uint32_t i = 0; i < warm_up || seconds_since(begin) < wait; ++i)
-    renderer.draw(pose, session.options.time_s, session.options.seed, i);
+    draw_frame(session, renderer, session.options.path.empty() ? i : i % session.frame_count());
   std::vector<std::string> names;
   std::vector<std::vector<double>> per_pass;
   std::vector<double> gpu, wall;
   const Clock::time_point start = Clock::now();
   for (uint32_t i = 0; i < repeats; ++i) {
     const Clock::time_point before = Clock::now();
-    renderer.draw(pose, session.options.time_s, session.options.seed, warm_up + i);
+    draw_frame(session, renderer, session.options.path.empty() ? warm_up + i : (warm_up + i) % session.frame_count());
     wall.push_back(std::chrono::duration<double, std::milli>(Clock::now() - before).count());
     double sum = 0.0;
     const std::vector<gpu::PassTime> times = renderer.pass_times();
@@ -95,8 +97,10 @@ struct OtherScene {
                                        from.instance,
                                        from.device,
                                        {from.device, scene, settings, options.inject}} {
-    options.view = view.view;
-    load_scene_and_settings(from.chapter, view.scene, options.set, scene, settings);
+    (view.frames > 0 ? options.path : options.view) = view.view;
+    (view.frames > 0 ? options.view : options.path).clear();
+    options.frames = view.frames;
+    load_scene_and_settings(from.chapter, view.scene, options.set, options.time_s, scene, settings);
   }
   OtherScene(const OtherScene&) = delete;
 };
@@ -118,13 +122,17 @@ std::vector<std::vector<double>> ordered_by_pipeline(std::vector<std::vector<dou
   return ladder;
 }
 
+// A frame of a path, after those before it, which it may remember.
+void draw_up_to(const Session& session, Renderer& renderer, uint32_t frame) {
+  for (uint32_t i = 0; i <= frame; ++i) draw_frame(session, renderer, i);
+}
+
 // What the errors of a sweep are errors against: this program at its best.
-Image draw_reference(OtherScene& other, Program& program, VkExtent2D size) {
+Image draw_reference(OtherScene& other, Program& program, VkExtent2D size, uint32_t frame) {
   const Session& session = other.session;
-  const CameraPose pose = session.first_pose();
   for (const auto& [name, text] : session.chapter.reference) other.settings.set(name, text);
   Renderer renderer(session.context, session.chapter, program, size);
-  renderer.draw(pose, session.options.time_s, session.options.seed, 0);
+  draw_up_to(session, renderer, frame);
   return renderer.picture();
 }
 
@@ -132,6 +140,11 @@ std::string describe_reference(const Chapter& chapter) {
   std::string text;
   for (const auto& [name, value] : chapter.reference) text += (text.empty() ? "" : " ") + name + "=" + value;
   return text;
+}
+
+std::string name_of(const StandardView& view, char between) {
+  const std::string frame = view.frames > 0 ? fmt::format("_{}_of_{}", view.frame, view.frames) : "";
+  return fmt::format("{}{}{}{}", view.scene, between, view.view, frame);
 }
 
 void must_have_standard_views(const Session& session) {
@@ -148,20 +161,20 @@ Image draw_truth(const Session& session, const CameraPose& pose, VkExtent2D size
   const std::unique_ptr<Program> tracer = truth.make(context);
   const Chapter plain;
   Renderer renderer(context, plain, *tracer, size);
-  for (uint32_t i = 0; i < truth.frames; ++i) renderer.draw(pose, session.options.time_s, seed, i);
+  for (uint32_t i = 0; i < truth.frames; ++i) renderer.draw(pose, session.scene.time_s, seed, i);
   return renderer.picture();
 }
 
 Exit run_bench(const Session& session) {
   const std::unique_ptr<Program> program = session.make_program();
   Renderer renderer(session.context, session.chapter, *program, session.options.size);
-  const uint32_t repeats = session.options.frames > 0 ? session.options.frames : kRepeats;
-  const CameraPose pose = session.first_pose();
-  const Timings timings = time_frames(session, renderer, pose, kWarmUp, repeats);
+  const bool still = session.options.path.empty();
+  const uint32_t repeats = session.options.frames > 0 || !still ? session.frame_count() : kRepeats;
+  const Timings timings = time_frames(session, renderer, kWarmUp, repeats);
   const gpu::Candidate& device = session.device.candidate();
   measure::BenchResult result{session.chapter.name,
                               session.scene.name,
-                              session.scene.view(session.options.view).name,
+                              still ? session.scene.view(session.options.view).name : session.options.path,
                               device.name,
                               device.driver,
                               device.software,
@@ -176,7 +189,7 @@ Exit run_bench(const Session& session) {
                               now_utc()};
   for (const Knob& knob : session.settings.knobs()) result.settings[knob.name] = session.settings.text(knob.name);
   if (!session.options.output.empty())
-    write_output(session, session.options.output, pose, renderer.picture(), renderer.displayed());
+    write_output(session, session.options.output, session.first_pose(), renderer.picture(), renderer.displayed());
   measure::write_bench(session.options.bench, result);
   fmt::print("{}", measure::bench_table(result));
   return Exit::ok;
@@ -200,17 +213,17 @@ Exit run_sweep(const Session& session) {
     const std::vector<std::vector<double>> ladder = ordered_by_pipeline(measure::ladder_settings(base), base);
     const std::unique_ptr<Program> program = other.session.make_program();
     Renderer renderer(other.session.context, session.chapter, *program, size);
-    const CameraPose pose = other.session.first_pose();
     const float exposure = static_cast<float>(kBaseExposure * std::exp2(other.scene.post.exposure_ev));
     const auto display = [&](const glm::vec3& value) { return image::display(value, exposure); };
 
-    const Image reference = draw_reference(other, *program, size);
+    const Image reference = draw_reference(other, *program, size, standard.frame);
     program->set_target(renderer.target());
 
     for (const std::vector<double>& values : ladder) {
       other.settings = measure::with_values(base, values);
-      const Timings timings = time_frames(other.session, renderer, pose, 1, device.software ? 3 : kRepeats);
-      measure::SweepRow row{.view = standard.scene + "/" + standard.view,
+      const Timings timings = time_frames(other.session, renderer, 1, device.software ? 3 : kRepeats);
+      if (standard.frames > 0) draw_up_to(other.session, renderer, standard.frame);
+      measure::SweepRow row{.view = name_of(standard, '/'),
                             .gpu_ms = timings.gpu,
                             .wall_ms = timings.wall,
                             .bytes = session.device.allocated_bytes(),
@@ -241,7 +254,7 @@ Exit run_probe(const Session& session) {
       rays[row].*field = column[row];
     }
   };
-  fill("altitude_km", &ProbeRay::altitude_km, 0.0, 500000.0);
+  fill("altitude_km", &ProbeRay::altitude_km, 0.0, kHighest_km);
   fill("view_zenith_deg", &ProbeRay::view_zenith_deg, 0.0, 180.0);
   fill("sun_zenith_deg", &ProbeRay::sun_zenith_deg, 0.0, 180.0);
   fill("relative_azimuth_deg", &ProbeRay::relative_azimuth_deg, -360.0, 360.0);
@@ -271,6 +284,21 @@ Exit run_probe(const Session& session) {
   return Exit::ok;
 }
 
+namespace {
+
+// Expected, got and their difference in one picture beside the build's shaders, for people to look at.
+void show_difference(const std::string& name, const Image& expected, const Image& got) {
+  const std::filesystem::path directory = gpu::shader_directory().parent_path() / "golden",
+                              file = directory / (name + ".png");
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);  // what stands in the way is said by writing
+  const float exposure = measure::choose_exposure(expected), gain = measure::choose_gain(expected, got, exposure);
+  image::write_png8(file, measure::side_by_side(expected, got, exposure, gain));
+  fmt::print("golden {}: expected, got, difference x {:g}: {}\n", name, gain, file.string());
+}
+
+}  // namespace
+
 // [golden]
 Exit run_golden(const Session& session) {
   must_have_standard_views(session);
@@ -279,7 +307,7 @@ Exit run_golden(const Session& session) {
   const std::string driver = session.device.candidate().name + ", " + session.device.candidate().driver;
   Exit result = Exit::ok;
   for (const StandardView& standard : session.chapter.standard_views) {
-    const std::string name = fmt::format("{:02}_{}_{}", session.chapter.number, standard.scene, standard.view);
+    const std::string name = fmt::format("{:02}_{}", session.chapter.number, name_of(standard, '_'));
     const std::filesystem::path file = directory / (name + ".exr"), recorded = directory / (name + ".driver");
     const bool exists = std::filesystem::exists(file);
     if (!exists && session.options.golden == Golden::check) {
@@ -290,7 +318,7 @@ Exit run_golden(const Session& session) {
     OtherScene other(session, standard);
     const std::unique_ptr<Program> program = other.session.make_program();
     Renderer renderer(other.session.context, session.chapter, *program, kGoldenSize);
-    renderer.draw(other.session.first_pose(), session.options.time_s, session.options.seed, 0);
+    draw_up_to(other.session, renderer, standard.frame);
     const Image picture = renderer.picture();
     if (exists) {
       // Bit for bit on the driver that made it; elsewhere arithmetic differs in the last places.
@@ -307,7 +335,10 @@ Exit run_golden(const Session& session) {
                  : good    ? "close"
                            : "DIFFERS",
                  measure::describe(errors), same_driver ? "driver of the golden" : "another driver");
-      if (!good && session.options.golden == Golden::check) result = Exit::mismatch;
+      if (!good && session.options.golden == Golden::check) {
+        show_difference(name, golden, picture);
+        result = Exit::mismatch;
+      }
     }
     if (session.options.golden == Golden::update) {
       std::filesystem::create_directories(directory);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,11 +27,13 @@ struct Options {
   uint32_t frames = 0;  // 0: one picture headless, until closed in a window
   std::string scene;
   std::string view;
+  std::string path;  // of the scene, or a scene file whose first path it is
   std::vector<std::pair<std::string, std::string>> set;
   uint32_t seed = 1;
-  double time_s = 0.0;
+  std::optional<double> time_s;
   // output
   std::string output;
+  uint32_t supersample = 1;  // a headless picture is drawn as many times as large each way, and averaged
   std::string dump_what, dump_file;
   bool explain = false;
   // measure
@@ -40,7 +43,7 @@ struct Options {
   std::string inject;
 };
 
-// Parses argv for a chapter. Prints --help or --version and returns false if that is all that was asked.
+// Parses argv for a chapter. Prints --help and returns false if that is all that was asked.
 // Throws Error (Exit::usage) with one line for anything it does not accept.
 bool parse_options(int argc, char** argv, const Chapter& chapter, Options& options);
 

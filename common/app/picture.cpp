@@ -7,6 +7,7 @@
 
 #include "common/app/progress.hpp"
 #include "common/app/session.hpp"
+#include "common/image/average.hpp"
 #include "common/image/display.hpp"
 #include "common/image/exr.hpp"
 #include "common/image/png.hpp"
@@ -23,6 +24,12 @@ size_t count_not_finite(const Image& picture) {
   for (const glm::vec4& pixel : picture.pixels)
     if (!std::isfinite(pixel.r) || !std::isfinite(pixel.g) || !std::isfinite(pixel.b)) ++count;
   return count;
+}
+
+// "out/a.png", 7 -> "out/a_0007.png".
+std::string numbered(const std::string& file, uint32_t frame) {
+  const size_t dot = file.rfind('.');
+  return fmt::format("{}_{:04}{}", file.substr(0, dot), frame, file.substr(dot));
 }
 
 void print_times(const Session& session, Renderer& renderer) {
@@ -57,6 +64,16 @@ void explain(const Session& session, const Program& program, Renderer& renderer,
              session.device.allocated_bytes(), allocations_by_later_frames);
 }
 
+// How large a picture is drawn to be averaged to `size`; Error if the device has no such images.
+VkExtent2D drawn_size(const Session& session, VkExtent2D size) {
+  const uint32_t n = session.options.supersample, limit = session.device.limits().maxImageDimension2D;
+  const VkExtent2D drawn{size.width * n, size.height * n};  // at most 8 * 16384
+  if (n > 1 && std::max(drawn.width, drawn.height) > limit)
+    fail("--supersample {} of {}x{} draws {}x{} pixels; accepted is up to {} a side on {}", n, size.width, size.height,
+         drawn.width, drawn.height, limit, session.device.candidate().name);
+  return drawn;
+}
+
 Exit compare_with(const Session& session, const Image& picture, const Image& reference) {
   const float exposure = static_cast<float>(kBaseExposure * std::exp2(session.scene.post.exposure_ev));
   const measure::Errors errors =
@@ -66,6 +83,12 @@ Exit compare_with(const Session& session, const Image& picture, const Image& ref
 }
 
 }  // namespace
+
+void draw_frame(const Session& session, Renderer& renderer, uint32_t index) {
+  const Shot shot = session.shot(index);
+  session.scene.time_s = shot.time_s;
+  renderer.draw(shot.pose, shot.time_s, session.options.seed, index, shot.seconds);
+}
 
 Exit run_picture(const Session& session) {
   const Options& options = session.options;
@@ -77,24 +100,34 @@ Exit run_picture(const Session& session) {
 
   const std::unique_ptr<Program> program = session.make_program();
   // Drivers compile a shader at its first dispatch: a picture of one workgroup takes that out of the times shown.
-  Renderer(session.context, session.chapter, *program, {8, 8})
-      .draw(session.first_pose(), options.time_s, options.seed, 0);
-  Renderer renderer(session.context, session.chapter, *program, options.size_given ? options.size : kHeadlessSize);
-  const CameraPose pose = session.first_pose();
-  const uint32_t frames = std::max(options.frames, options.explain ? 2u : 1u);
+  {
+    Renderer small(session.context, session.chapter, *program, {8, 8});
+    draw_frame(session, small, 0);
+  }
+  Renderer renderer(session.context, session.chapter, *program,
+                    drawn_size(session, options.size_given ? options.size : kHeadlessSize));
+  const uint32_t frames = std::max(session.frame_count(), options.explain ? 2u : 1u);
   uint64_t allocations = 0;
+  const auto save = [&](uint32_t i) {
+    if (options.output.empty()) std::filesystem::create_directories("out");
+    write_output(session, options.path.empty() ? file : numbered(file, i), session.shot(i).pose,
+                 image::averaged(renderer.picture(), options.supersample),
+                 image::averaged(renderer.displayed(), options.supersample));
+  };
   Progress progress("drawing", frames);
   for (uint32_t i = 0; i < frames; ++i) {
-    renderer.draw(pose, options.time_s, options.seed, i);
+    draw_frame(session, renderer, i);
+    if (writes && !options.path.empty()) save(i);
     if (i == 0) allocations = session.device.allocation_count();
     progress.step();
   }
   allocations = session.device.allocation_count() - allocations;
 
-  const Image picture = renderer.picture();
+  const Image picture = image::averaged(renderer.picture(), options.supersample);
+  const Image8 displayed = image::averaged(renderer.displayed(), options.supersample);
   const size_t not_finite = count_not_finite(picture);
   if (options.dump_what == "picture") image::write_exr(options.dump_file, picture);
-  if (options.dump_what == "displayed") image::write_png8(options.dump_file, renderer.displayed());
+  if (options.dump_what == "displayed") image::write_png8(options.dump_file, displayed);
   if (std::count(session.chapter.images.begin(), session.chapter.images.end(), options.dump_what) > 0) {
     const gpu::Image* image = program->image(options.dump_what);
     if (image == nullptr)
@@ -107,15 +140,13 @@ Exit run_picture(const Session& session) {
           options.dump_file,
           image::to_display(content, static_cast<float>(kBaseExposure * std::exp2(session.scene.post.exposure_ev))));
   }
-  if (writes) {
-    if (options.output.empty()) std::filesystem::create_directories("out");
-    write_output(session, file, pose, picture, renderer.displayed());
-  }
+  if (writes && options.path.empty()) save(0);
   if (options.explain)
     explain(session, *program, renderer, allocations);
   else
     print_times(session, renderer);
-  if (writes) fmt::print("wrote {}\n", file);
+  if (writes && options.path.empty()) fmt::print("wrote {}\n", file);
+  if (writes && !options.path.empty()) fmt::print("wrote {} to {}\n", numbered(file, 0), numbered(file, frames - 1));
   if (writes && options.output.empty() && !session.chapter.try_next.empty())
     fmt::print("next: {}\n", session.chapter.try_next);
   const Exit compared = reference ? compare_with(session, picture, *reference) : Exit::ok;

@@ -10,8 +10,6 @@
 namespace welkin::app {
 namespace {
 
-constexpr double kHeadlessFrameSeconds = 1.0 / 60.0;  // a file has no clock
-
 struct DisplayPush {
   int32_t size[2];
   float exposure;
@@ -132,12 +130,12 @@ Renderer::Renderer(const Context& context, const Chapter& chapter, Program& prog
   drawing_.set_targets(targets_);
 }
 
-void Renderer::draw(const CameraPose& pose, double time_s, uint32_t seed, uint32_t index) {
+void Renderer::draw(const CameraPose& pose, double time_s, uint32_t seed, uint32_t index, double seconds) {
   if (drawing_.stale()) drawing_.follow();
   const CameraRays camera = camera_rays(pose, context_.scene, time_s, {size().width, size().height}, seed, index);
   gpu::begin_commands(commands_);
-  const double seconds = index == 0 ? 0.0 : kHeadlessFrameSeconds;
-  drawing_.record({commands_, targets_.picture, camera, timer_, index, seed, seconds, pose.position_km});
+  drawing_.record(
+      {commands_, targets_.picture, camera, timer_, index, seed, index == 0 ? 0.0 : seconds, pose.position_km});
   gpu::end_commands(commands_);
   gpu::submit_and_wait(context_.device, commands_);
 }

@@ -13,6 +13,9 @@ namespace welkin::app {
 // above.
 inline constexpr double kBaseExposure = 24.0;
 
+// A file has no clock: what lies between two frames unless something says otherwise.
+inline constexpr double kHeadlessFrameSeconds = 1.0 / 60.0;
+
 // The images a frame is drawn into.
 struct Targets {
   gpu::Image picture;    // rgba32f, linear
@@ -52,7 +55,8 @@ class Renderer {
   Renderer(const Context& context, const Chapter& chapter, Program& program, VkExtent2D size);
 
   // Draws one frame and waits for it. Scene and settings are followed.
-  void draw(const CameraPose& pose, double time_s, uint32_t seed, uint32_t index);
+  void draw(const CameraPose& pose, double time_s, uint32_t seed, uint32_t index,
+            double seconds = kHeadlessFrameSeconds);
 
   std::vector<gpu::PassTime> pass_times() { return timer_.read(); }
   Image picture();  // linear, with the fault --inject nan planted if asked

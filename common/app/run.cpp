@@ -1,5 +1,6 @@
 // main() of every chapter: from the command line to the mode asked for, and from any Error to one line and an exit
 // code.
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 
@@ -10,6 +11,7 @@
 #include "common/image/png.hpp"
 #include "common/measure/knobs_json.hpp"
 #include "common/scene/one_line.hpp"
+#include "common/scene/path.hpp"
 #include "common/scene/scene_knobs.hpp"
 
 namespace welkin::app {
@@ -30,14 +32,38 @@ void print_devices(const std::vector<gpu::Candidate>& candidates) {
                candidates[i].lacks.empty() ? "" : fmt::format(" lacks {}", fmt::join(candidates[i].lacks, ", ")));
 }
 
+// Adds one of another scene, unless it is there.
+template <typename One>
+void bring(std::vector<One>& list, const One& one, const std::string& from) {
+  const auto found = std::find_if(list.begin(), list.end(), [&](const One& other) { return other.name == one.name; });
+  if (found == list.end())
+    list.push_back(one);
+  else if (!(*found == one))
+    fail("--path {}: this scene has another '{}': accepted are names of their own", from, one.name);
+}
+
+// Brings the first path of another scene file, and the views that it passes, into this one. Returns its name.
+std::string bring_path(const std::string& file, Scene& scene) {
+  const Scene other = load_scene(file, scenes_directory());
+  const Path& path = other.path("");
+  for (const std::string& name : path.views) bring(scene.views, other.view(name), file);
+  bring(scene.paths, path, file);
+  if (!path.moment_s.empty() && !scene.sun.latitude_deg)
+    fail("--path {}: path '{}' has moment_s and scene '{}' no latitude: {}", file, path.name, scene.name,
+         kNeedsLatitude);
+  return path.name;
+}
+
 Exit run_mode(const Chapter& chapter, Options& options) {
   const bool instrument = !options.bench.empty() || !options.sweep.empty() || !options.probe.empty() ||
                           options.golden != Golden::none || options.explain || !options.against.empty() ||
                           !options.dump_what.empty();
   Scene scene;
   Settings settings;
-  load_scene_and_settings(chapter, options.scene.empty() ? chapter.default_scene : options.scene, options.set, scene,
-                          settings);
+  load_scene_and_settings(chapter, options.scene.empty() ? chapter.default_scene : options.scene, options.set,
+                          options.time_s, scene, settings);
+  if (options.path.ends_with(".toml") || options.path.ends_with(".png")) options.path = bring_path(options.path, scene);
+  if (!options.path.empty()) scene.path(options.path);
   scene.view(options.view);  // an unknown view is said before any device is looked for
   if (options.dump_what == "knobs") {
     measure::write_knobs_json(options.dump_file, chapter.name, settings.knobs());
@@ -85,37 +111,64 @@ Exit run_mode(const Chapter& chapter, Options& options) {
 std::filesystem::path scenes_directory() { return gpu::source_directory() / "chapters" / "scenes"; }
 
 void load_scene_and_settings(const Chapter& chapter, const std::string& scene_name,
-                             const std::vector<std::pair<std::string, std::string>>& set, Scene& scene,
-                             Settings& settings) {
+                             const std::vector<std::pair<std::string, std::string>>& set, std::optional<double> time_s,
+                             Scene& scene, Settings& settings) {
   scene = load_scene(scene_name, scenes_directory());
   std::vector<Knob> knobs = chapter.knobs;
-  if (chapter.sky) knobs = joined(std::move(knobs), scene_knobs(scene));
+  if (chapter.sky) knobs = joined(std::move(knobs), scene_knobs(scene, has_meter(chapter)));
   settings = Settings(std::move(knobs));
   // A picture of another chapter may carry knobs this one lacks: the scene's are hints, the command line's are orders.
   for (const auto& [name, text] : scene.settings)
     if (settings.has(name)) settings.set(name, text);
   for (const auto& [name, text] : set) settings.set(name, text);
   apply_scene_knobs(settings, scene);
+  scene.time_s = time_s.value_or(scene.time_s);
+  if (scene.time_s != 0.0 && chapter.sky && !scene.sun.latitude_deg)
+    fail("--time {}: scene '{}' has no latitude: {}", scene.time_s, scene.name, kNeedsLatitude);
 }
 
-std::string restoring_text(const Session& session, const CameraPose& pose) {
+uint32_t Session::frame_count() const {
+  if (options.frames > 0 || options.path.empty()) return std::max(options.frames, 1u);
+  const Path& path = scene.path(options.path);
+  return static_cast<uint32_t>(std::clamp(24.0 * (path.time_s.back() - path.time_s.front()), 1.0, 1e6)) + 1;
+}
+
+Shot Session::shot(uint32_t index) const {
+  const double radius_km = scene.planet.ground_radius_km;
+  if (options.path.empty()) return {pose_of(scene.view(options.view), radius_km), scene.time_s, kHeadlessFrameSeconds};
+  const Path& path = scene.path(options.path);
+  const double begin_s = path.time_s.front(), seconds = path.time_s.back() - begin_s;
+  const double step_s = seconds / std::max(frame_count() - 1, 1u);
+  const PathPoint point = point_on(scene, path, begin_s + std::min(index * step_s, seconds));
+  return {pose_of(point.view, radius_km), point.moment_s, step_s};
+}
+
+std::string restoring_text(const Session& session, const CameraPose& pose, const std::filesystem::path& directory) {
   Scene scene = session.scene;
-  const SunPlace sun =
-      advance_sun(scene.sun.zenith_deg, scene.sun.azimuth_deg, scene.sun.latitude_deg, session.options.time_s);
-  scene.sun.zenith_deg = sun.zenith_deg, scene.sun.azimuth_deg = sun.azimuth_deg;
-  std::erase_if(scene.views, [](const View& view) { return view.name == "restored"; });
+  std::erase_if(scene.views, [](const View& view) { return view.name == kRestoredView; });
   scene.views.insert(scene.views.begin(), view_of(pose, scene.planet.ground_radius_km));
+  std::erase_if(scene.paths,
+                [](const Path& path) { return std::count(path.views.begin(), path.views.end(), kRestoredView) > 0; });
   scene.settings.clear();
   for (const Knob& knob : session.chapter.knobs)
     if (session.settings.was_set(knob.name)) scene.settings.emplace_back(knob.name, session.settings.text(knob.name));
-  return write_scene(scene);
+  if (scene.terrain) scene.terrain->height_map = portable_path(scene.terrain->height_map, directory);
+  const std::string text = write_scene(scene);
+  if (!(parse_scene(text, "the scene of this picture") == scene))
+    fail("this scene cannot be restored from what is written of it");
+  return text;
 }
 
 void write_output(const Session& session, const std::string& file, const CameraPose& pose, const Image& picture,
                   const Image8& displayed) {
   if (file.ends_with(".exr")) return image::write_exr(file, picture);
   image::write_png8(file, displayed,
-                    {{"welkin.scene", restoring_text(session, pose)}, {"welkin.chapter", session.chapter.name}});
+                    {{"welkin.scene", restoring_text(session, pose, std::filesystem::path(file).parent_path())},
+                     {"welkin.chapter", session.chapter.name}});
+}
+
+bool has_meter(const Chapter& chapter) {
+  return std::any_of(chapter.effects.begin(), chapter.effects.end(), [](const Effect& effect) { return effect.name == "exposure"; });
 }
 
 std::unique_ptr<Program> make_program(const Chapter& chapter, const Context& context) {

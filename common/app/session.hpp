@@ -9,6 +9,13 @@
 
 namespace welkin::app {
 
+// A frame to draw: the camera, the scene's time, and the seconds since the frame before.
+struct Shot {
+  CameraPose pose;
+  double time_s;
+  double seconds;
+};
+
 struct Session {
   const Chapter& chapter;
   const Options& options;
@@ -19,23 +26,30 @@ struct Session {
   Context context;
 
   std::unique_ptr<Program> make_program() const { return app::make_program(chapter, context); }
-  CameraPose first_pose() const { return pose_of(scene.view(options.view)); }
+  CameraPose first_pose() const { return shot(0).pose; }
+  // Frame `index` of what is asked for: of a view, all alike; of a path, frame_count() of them over its times.
+  Shot shot(uint32_t index) const;
+  uint32_t frame_count() const;  // --frames, else 1, or 24 a second of a path
 };
 
 std::filesystem::path scenes_directory();
 
-// Scene by name or file with its [settings], then --set, all checked. Fills settings with the chapter's knobs and the
-// scene's, and applies the scene's knobs to the scene.
+// Scene by name or file with its [settings], then --set and --time, all checked. Fills settings with the chapter's
+// knobs and the scene's, and applies the scene's knobs to the scene.
 void load_scene_and_settings(const Chapter& chapter, const std::string& scene_name,
-                             const std::vector<std::pair<std::string, std::string>>& set, Scene& scene,
-                             Settings& settings);
+                             const std::vector<std::pair<std::string, std::string>>& set, std::optional<double> time_s,
+                             Scene& scene, Settings& settings);
 
-// The scene with the camera and every explicit setting, as the text a screenshot carries.
-std::string restoring_text(const Session& session, const CameraPose& pose);
+// The scene with the camera and every explicit setting, as the text that a screenshot in `directory` carries: read
+// back, it is the same scene. Throws Error if it is not.
+std::string restoring_text(const Session& session, const CameraPose& pose, const std::filesystem::path& directory);
 
 // Writes the picture where --output says: .exr linear, .png displayed and restoring.
 void write_output(const Session& session, const std::string& file, const CameraPose& pose, const Image& picture,
                   const Image8& displayed);
+
+// Draws frame `index` of what is asked for; the scene's time is that frame's.
+void draw_frame(const Session& session, Renderer& renderer, uint32_t index);
 
 // A view as the chapter's truth shows it; the chapter has one. Without its display pass, whatever that is.
 Image draw_truth(const Session& session, const CameraPose& pose, VkExtent2D size, uint32_t seed);

@@ -29,6 +29,7 @@ const Candidate& choose_device(const std::vector<Candidate>& candidates, const s
 struct Allocation {
   std::string name;
   uint64_t bytes = 0;
+  uint64_t id = 0;  // names need not be unique, these are
 };
 
 class Device {

@@ -22,16 +22,12 @@ Memory allocate(const Device& device, const VkMemoryRequirements& needs, VkMemor
 }  // namespace
 
 AccountEntry::AccountEntry(const Device& device, const std::string& name, uint64_t bytes)
-    : device_(&device), name_(name) {
-  device.allocations().push_back({name, bytes});
-  ++device.allocation_count();
+    : device_(&device), id_(++device.allocation_count()), bytes_(bytes) {
+  device.allocations().push_back({name, bytes, id_});
 }
 
 AccountEntry::~AccountEntry() {
-  if (device_ == nullptr) return;
-  std::vector<Allocation>& all = device_->allocations();
-  const auto mine = std::find_if(all.begin(), all.end(), [&](const Allocation& a) { return a.name == name_; });
-  if (mine != all.end()) all.erase(mine);
+  if (device_ != nullptr) std::erase_if(device_->allocations(), [&](const Allocation& a) { return a.id == id_; });
 }
 
 // [image]

@@ -14,16 +14,17 @@ class AccountEntry {
  public:
   AccountEntry() = default;
   AccountEntry(const Device& device, const std::string& name, uint64_t bytes);
-  AccountEntry(AccountEntry&& other) noexcept { std::swap(device_, other.device_), std::swap(name_, other.name_); }
+  AccountEntry(AccountEntry&& other) noexcept { *this = std::move(other); }
   AccountEntry& operator=(AccountEntry&& other) noexcept {
-    std::swap(device_, other.device_), std::swap(name_, other.name_);
+    std::swap(device_, other.device_), std::swap(id_, other.id_), std::swap(bytes_, other.bytes_);
     return *this;
   }
   ~AccountEntry();
+  uint64_t bytes() const { return bytes_; }
 
  private:
   const Device* device_ = nullptr;
-  std::string name_;
+  uint64_t id_ = 0, bytes_ = 0;
 };
 
 struct Image {

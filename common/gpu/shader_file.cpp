@@ -64,7 +64,11 @@ std::string recompile_shaders(int up_to_chapter) {
     finished.emplace_back(fresh, target);
     if (pclose(pipe) != 0) return discard(), message.empty() ? "glslangValidator failed" : message;
   }
-  for (const auto& [fresh, target] : finished) fs::rename(fresh, target, ignored);
+  for (const auto& [fresh, target] : finished) {
+    std::error_code error;
+    fs::rename(fresh, target, error);
+    if (error) return discard(), fmt::format("cannot write {}: {}", target.string(), error.message());
+  }
   return {};
 }
 

@@ -106,6 +106,15 @@ bool Composition::stale() {
 
 // [rebuild]
 void Composition::rebuild() {
+  try {
+    follow();
+  } catch (...) {
+    for (State& state : states_) state.built = false;  // half of it may be gone: next time all of it is declared
+    throw;
+  }
+}
+
+void Composition::follow() {
   scene_ = context_.scene, values_ = context_.settings.values();
   bool anything = false;
   std::set<std::type_index> changed;  // what is offered otherwise than before
@@ -226,10 +235,10 @@ std::vector<ProbeResult> Composition::probe(std::span<const ProbeRay> rays) {
   return probe_ ? probe_(context_, rays) : Program::probe(rays);
 }
 
-uint64_t Composition::declared(const std::string& effect) const {
-  for (const State& state : states_)
-    if (state.effect.name == effect) return state.declared;
-  return 0;
+uint32_t Composition::index_of(const std::string& effect) const {
+  for (uint32_t i = 0; i < states_.size(); ++i)
+    if (states_[i].effect.name == effect) return i;
+  fail("no effect '{}' in this composition", effect);
 }
 
 std::string Composition::explain() const {

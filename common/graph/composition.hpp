@@ -38,8 +38,11 @@ class Composition : public Program {
   }
   // Executes the graph once outside of any frame, for a camera, and waits.
   void execute_once(const CameraRays& camera = {});
-  // How often the effect of this name was declared.
-  uint64_t declared(const std::string& effect) const;
+  // Of the effect of this name: how often it was declared; its passes that are needed, its resources that exist.
+  uint64_t declared(const std::string& effect) const { return states_.at(index_of(effect)).declared; }
+  std::vector<std::string> passes_of(const std::string& effect) const { return graph_.order(index_of(effect)); }
+  std::vector<std::string> resources_of(const std::string& effect) const { return graph_.resources(index_of(effect)); }
+  uint64_t bytes() const { return graph_.bytes(); }  // of all resources of the graph's own
 
  private:
   struct State {
@@ -51,8 +54,10 @@ class Composition : public Program {
     std::function<void(CameraRays&, glm::dvec3&)> adjust_camera;
     std::function<std::string()> explain;
   };
+  uint32_t index_of(const std::string& effect) const;
   Wanted wanted_of(const State& state) const;
   std::string key_of(const State& state, const Wanted& wanted) const;
+  void follow();
   void declare(uint32_t index);
   void connect();
   ViewBlock view_of(const Frame& frame, const CameraRays& camera, const glm::dvec3& position_km) const;

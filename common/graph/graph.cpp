@@ -36,11 +36,14 @@ void Graph::add(Pass pass) {
   passes_.push_back(std::make_unique<Counted>());
   passes_.back()->pass = std::move(pass);
   passes_.back()->owner = owner_;
+  passes_.back()->runs = past_runs_[passes_.back()->pass.name];
 }
 
 void Graph::set_output(Resource resource, bool output) { held_of(resource).output = output; }
 
 void Graph::remove(uint32_t owner) {
+  for (const auto& counted : passes_)
+    if (counted->owner == owner) past_runs_[counted->pass.name] = counted->runs;
   std::erase_if(passes_, [&](const auto& counted) { return counted->owner == owner; });
   std::erase_if(held_, [&](const auto& entry) { return entry.second.owner == owner; });
   order_.clear();  // until compile()
@@ -97,6 +100,12 @@ void Graph::cull() {
     if (writer == nullptr) fail("frame graph: '{}' is an output, and no pass writes it", held.name);
     visit(*writer, mark);
   }
+  // Effects stand on those before them in the list: their passes run in its order, whichever was declared last.
+  std::stable_sort(passes_.begin(), passes_.end(), [](const auto& a, const auto& b) { return a->owner < b->owner; });
+  order_.clear();
+  mark.clear();
+  for (const auto& counted : passes_)
+    if (counted->used) visit(*counted, mark);
   for (const auto& counted : passes_)
     if (!counted->used) counted->fresh = true;  // it will have missed what happens until it is needed again
 }

@@ -165,8 +165,11 @@ class Graph {
   // The barriers of frame `frame` if every pass runs in each. Needs no device.
   std::vector<Barrier> barriers(int frame = 0) const;
   std::vector<std::string> order() const;
-  uint64_t runs(const std::string& pass) const;  // 0 for a pass there is not
-  bool has_pass(uint32_t owner) const;           // that is needed
+  std::vector<std::string> order(uint32_t owner) const;      // of one effect's
+  std::vector<std::string> resources(uint32_t owner) const;  // of one effect's that exist
+  uint64_t bytes() const;                                    // of all that are its own
+  uint64_t runs(const std::string& pass) const;              // 0 for a pass there is not
+  bool has_pass(uint32_t owner) const;                       // that is needed
 
  private:
   struct State {                            // what happened to a mip last
@@ -220,6 +223,7 @@ class Graph {
   Held& held_of(Resource resource) { return held_.at(resource); }
   uint32_t parity() const { return static_cast<uint32_t>(frames_ & 1); }
   static const gpu::Image* image_of(const Held& held, bool second);
+  static uint64_t bytes_of(const Held& held);
   void reflect(Counted& counted);
   void check_accesses(const Counted& counted);
   Counted* writer_of(const Held& held);
@@ -251,7 +255,8 @@ class Graph {
   uint32_t view_bytes_ = 0;
   std::map<Resource, Held> held_;
   std::vector<std::unique_ptr<Counted>> passes_;
-  std::vector<Counted*> order_;  // of the passes that are needed
+  std::vector<Counted*> order_;                // of the passes that are needed
+  std::map<std::string, uint64_t> past_runs_;  // of passes that were taken out
   std::map<std::array<int, 3>, gpu::Sampler> samplers_;
   std::vector<VkImageMemoryBarrier2> image_barriers_;
   std::vector<VkBufferMemoryBarrier2> buffer_barriers_;

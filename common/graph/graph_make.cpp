@@ -289,6 +289,30 @@ std::vector<std::string> Graph::order() const {
   return names;
 }
 
+std::vector<std::string> Graph::order(uint32_t owner) const {
+  std::vector<std::string> names;
+  for (const Counted* counted : order_)
+    if (counted->owner == owner) names.push_back(counted->pass.name);
+  return names;
+}
+
+std::vector<std::string> Graph::resources(uint32_t owner) const {
+  std::vector<std::string> names;
+  for (const auto& [resource, held] : held_)
+    if (held.owner == owner && bytes_of(held) > 0) names.push_back(held.name);
+  return names;
+}
+
+uint64_t Graph::bytes_of(const Held& held) {
+  return held.own_images[0].account.bytes() + held.own_images[1].account.bytes() + held.own_buffer.account.bytes();
+}
+
+uint64_t Graph::bytes() const {
+  uint64_t sum = 0;
+  for (const auto& [resource, held] : held_) sum += bytes_of(held);
+  return sum;
+}
+
 uint64_t Graph::runs(const std::string& pass) const {
   for (const auto& counted : passes_)
     if (counted->pass.name == pass) return counted->runs;

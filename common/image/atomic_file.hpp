@@ -9,9 +9,10 @@
 
 namespace welkin {
 
-// Writes to "<target>.<pid>-<n>.tmp" in the target's directory and renames that over the target. On any failure the
-// temporary file is removed, the target is as it was, and Error says in one line what stood in the way (directory
-// missing, target a directory or a device, no permission, disk full). The directory is not made.
+// Writes to "<target>.<pid>-<n>.tmp" in the target's directory and renames that over the target, which is the file
+// behind a symbolic link, and keeps its permissions. On any failure the temporary file is removed, the target is as it
+// was, and Error says in one line what stood in the way (directory missing, target a directory or a device, no
+// permission, disk full). The directory is not made.
 void write_file_atomically(const std::filesystem::path& target, std::string_view contents);
 void write_file_atomically(const std::filesystem::path& target, std::span<const std::byte> contents);
 

@@ -6,6 +6,7 @@
 #include "common/error.hpp"
 #include "common/image/atomic_file.hpp"
 #include "common/knobs.hpp"
+#include "common/scene/one_line.hpp"
 
 namespace welkin {
 namespace {
@@ -32,13 +33,7 @@ std::vector<Field> split(std::string_view line) {
   return fields;
 }
 
-// A field as it may stand in a message: short and printable.
-std::string shown(std::string_view text) {
-  std::string out(text.substr(0, 100));
-  for (char& c : out)
-    if (static_cast<unsigned char>(c) < ' ' || c == 127) c = '?';
-  return text.size() > 100 ? out + "..." : out;
-}
+std::string shown(std::string_view text) { return one_line(text, 100); }
 
 }  // namespace
 
@@ -64,11 +59,14 @@ CsvTable parse_csv(std::string_view contents, const std::string& file, const std
   };
   size_t number = 0;
   const auto refuse = [&](size_t column, const std::string& why) { fail("{}:{}:{}: {}", file, number, column, why); };
+  if (contents.starts_with("\xEF\xBB\xBF")) contents.remove_prefix(3);  // the mark that spreadsheets put before UTF-8
+  if (contents.starts_with("\xFF\xFE") || contents.starts_with("\xFE\xFF"))
+    fail("{}: UTF-16 text; accepted is UTF-8", file);
   while (!contents.empty()) {
     ++number;
-    std::string_view line = contents.substr(0, contents.find('\n'));
-    contents.remove_prefix(std::min(line.size() + 1, contents.size()));
-    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    const std::string_view line = contents.substr(0, contents.find_first_of("\r\n"));
+    contents.remove_prefix(line.size());
+    contents.remove_prefix(contents.starts_with("\r\n") ? 2 : std::min<size_t>(1, contents.size()));
     if (line.find_first_not_of(" \t") == line.npos || line.front() == '#') continue;
     if (const size_t quote = line.find('"'); quote != line.npos) refuse(quote + 1, "quotes are not accepted");
     const std::vector<Field> fields = split(line);

@@ -1,6 +1,7 @@
 // Strict CSV for tables of numbers: '#' lines are comments, then one line of column names, then rows of as many fields.
 //
-// Fields are separated by commas; blanks around them, blank lines and CR LF are accepted; quotes are not.
+// Fields are separated by commas; blanks around them, blank lines, every kind of line end (LF, CR LF, CR) and a
+// byte order mark before UTF-8 are accepted; quotes are not.
 // Every field is a finite decimal number unless its column is asked for as text.
 #pragma once
 

@@ -109,53 +109,28 @@ void check(bool good, const std::string& file, const char* message) {
   fail("{}: EXR: {}", file, text.substr(0, text.find('\n')));
 }
 
-// tinyexr's structs, empty.
-EXRHeader new_header() {
-  EXRHeader header;
-  InitEXRHeader(&header);
-  return header;
-}
-EXRImage new_image() {
-  EXRImage image;
-  InitEXRImage(&image);
-  return image;
-}
-
-struct Exr {  // released whatever happens
-  EXRHeader header = new_header();
-  EXRImage image = new_image();
-  Exr() = default;
-  Exr(const Exr&) = delete;
-  ~Exr() {
-    FreeEXRImage(&image);
-    FreeEXRHeader(&header);
-  }
-};
-
 }  // namespace
 
-void write_exr(const std::filesystem::path& path, const Image& picture, bool with_alpha) {
+void write_exr(const std::filesystem::path& path, const Image& picture) {
   const size_t count = size_t{picture.width} * picture.height;
   if (count == 0 || picture.width > kMaxImageSide || picture.height > kMaxImageSide || picture.pixels.size() != count)
     fail("EXR of {}x{} with {} pixels: expected 1 to {} a side", picture.width, picture.height, picture.pixels.size(),
          kMaxImageSide);
-  const std::string names = with_alpha ? "ABGR" : "BGR";  // channels stand in alphabetical order
-  const int channels = static_cast<int>(names.size());
-  std::vector<float> planes[4];
-  unsigned char* pointers[4];
-  EXRChannelInfo infos[4] = {};
-  int types[4];
-  for (int c = 0; c < channels && c < 4; ++c) {
-    infos[c].name[0] = names[static_cast<size_t>(c)];
-    const int component = infos[c].name[0] == 'A' ? 3 : 2 - c + (with_alpha ? 1 : 0);
-    for (const glm::vec4& pixel : picture.pixels) planes[c].push_back(pixel[component]);
+  std::vector<float> planes[3];
+  unsigned char* pointers[3];
+  EXRChannelInfo infos[3] = {};
+  int types[] = {TINYEXR_PIXELTYPE_FLOAT, TINYEXR_PIXELTYPE_FLOAT, TINYEXR_PIXELTYPE_FLOAT};
+  for (int c = 0; c < 3; ++c) {  // channels stand in alphabetical order
+    infos[c].name[0] = "BGR"[c];
+    for (const glm::vec4& pixel : picture.pixels) planes[c].push_back(pixel[2 - c]);
     pointers[c] = reinterpret_cast<unsigned char*>(planes[c].data());
-    types[c] = TINYEXR_PIXELTYPE_FLOAT;
   }
-  EXRHeader header = new_header();  // these two borrow the arrays above: not to be freed by tinyexr
-  EXRImage image = new_image();
+  EXRHeader header;  // these two borrow the arrays above: not to be freed by tinyexr
+  EXRImage image;
+  InitEXRHeader(&header);
+  InitEXRImage(&image);
   header.compression_type = TINYEXR_COMPRESSIONTYPE_ZIP;
-  header.num_channels = image.num_channels = channels;
+  header.num_channels = image.num_channels = 3;
   header.channels = infos;
   header.pixel_types = header.requested_pixel_types = types;
   image.width = static_cast<int>(picture.width);
@@ -174,30 +149,35 @@ Image read_exr(const std::filesystem::path& path) {
   const std::string file = path.string(), bytes = read_file(path, kMaxFile);
   check_layout(bytes, file);
   const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
-  Exr exr;
+  EXRHeader header;
+  EXRImage image;
+  InitEXRHeader(&header);
+  InitEXRImage(&image);
+  const std::unique_ptr<EXRHeader, decltype(&FreeEXRHeader)> header_owner(&header, &FreeEXRHeader);
+  const std::unique_ptr<EXRImage, decltype(&FreeEXRImage)> image_owner(&image, &FreeEXRImage);
   EXRVersion version;
   const char* message = nullptr;
   check(ParseEXRVersionFromMemory(&version, data, bytes.size()) == TINYEXR_SUCCESS, file, nullptr);
-  const bool parsed = ParseEXRHeaderFromMemory(&exr.header, &version, data, bytes.size(), &message) == TINYEXR_SUCCESS;
+  const bool parsed = ParseEXRHeaderFromMemory(&header, &version, data, bytes.size(), &message) == TINYEXR_SUCCESS;
   check(parsed, file, message);
-  for (int c = 0; c < exr.header.num_channels; ++c) exr.header.requested_pixel_types[c] = TINYEXR_PIXELTYPE_FLOAT;
-  exr.image.num_channels = exr.header.num_channels;  // where decoding fails, tinyexr frees as many planes as this says,
-  const bool decoded = LoadEXRImageFromMemory(&exr.image, &exr.header, data, bytes.size(), &message) == TINYEXR_SUCCESS;
-  if (!decoded) exr.image = new_image();  // and leaves pointers to them
+  for (int c = 0; c < header.num_channels; ++c) header.requested_pixel_types[c] = TINYEXR_PIXELTYPE_FLOAT;
+  image.num_channels = header.num_channels;  // where decoding fails, tinyexr frees as many planes as this says,
+  const bool decoded = LoadEXRImageFromMemory(&image, &header, data, bytes.size(), &message) == TINYEXR_SUCCESS;
+  if (!decoded) InitEXRImage(&image);  // and leaves pointers to them
   check(decoded, file, message);
 
-  Image picture{static_cast<uint32_t>(exr.image.width), static_cast<uint32_t>(exr.image.height), {}};
+  Image picture{static_cast<uint32_t>(image.width), static_cast<uint32_t>(image.height), {}};
   picture.pixels.assign(size_t{picture.width} * picture.height, glm::vec4(1.0f));
   unsigned found = 0;
-  for (int c = 0; c < exr.header.num_channels; ++c) {
-    const std::string_view name = exr.header.channels[c].name;
-    const size_t component = name.size() == 1 ? std::string_view("RGBA").find(name) : std::string_view::npos;
+  for (int c = 0; c < header.num_channels; ++c) {
+    const std::string_view name = header.channels[c].name;
+    const size_t component = name.size() == 1 ? std::string_view("RGB").find(name) : std::string_view::npos;
     if (component == std::string_view::npos) continue;
     found |= 1u << component;
-    const auto* plane = reinterpret_cast<const float*>(exr.image.images[c]);
+    const auto* plane = reinterpret_cast<const float*>(image.images[c]);
     for (size_t i = 0; i < picture.pixels.size(); ++i) picture.pixels[i][static_cast<int>(component)] = plane[i];
   }
-  if ((found & 7u) != 7u) fail("{}: EXR lacks one of the channels R, G, B", file);
+  if (found != 7u) fail("{}: EXR lacks one of the channels R, G, B", file);
   return picture;
 }
 

@@ -21,10 +21,10 @@ struct Image8 {
   std::vector<uint8_t> rgba;  // width * height * 4
 };
 
-// Sixteen bits a channel, RGB, native byte order.
+// Sixteen bits a sample, one channel: a height map.
 struct Image16 {
   uint32_t width = 0, height = 0;
-  std::vector<uint16_t> rgb;  // width * height * 3
+  std::vector<uint16_t> gray;  // width * height
 };
 
 }  // namespace welkin

@@ -10,6 +10,13 @@
 
 namespace welkin {
 
+// Letters, digits, '_', '-' and '.': a name is typed on the command line and may become part of a file's name.
+inline bool plain_name(std::string_view text) {
+  return !text.empty() && text.find_first_not_of(
+                              "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
+                              "0123456789_-.") == text.npos;
+}
+
 inline std::string one_line(std::string_view text, size_t longest = 400) {
   std::string out;
   for (size_t i = 0; i < text.size(); ++i) {

@@ -2,12 +2,15 @@
 // the TOML is in scene_parse.cpp; the format is described in docs/scenes.md.
 #include "common/scene/scene.hpp"
 
+#include <strings.h>
+
 #include <algorithm>
 #include <system_error>
 
 #include "common/error.hpp"
 #include "common/image/atomic_file.hpp"
 #include "common/image/png.hpp"
+#include "common/scene/fields.hpp"
 #include "common/scene/one_line.hpp"
 
 namespace welkin {
@@ -15,12 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr size_t kLargestFile = 1u << 20;  // bytes: a scene is a page of text
-
-bool plain_name(const std::string& text) {
-  return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
-  });
-}
 
 std::string known_scenes(const fs::path& directory) {
   std::vector<std::string> names;
@@ -31,35 +28,68 @@ std::string known_scenes(const fs::path& directory) {
   return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
 }
 
-// The shortest text that reads back as the same value; + 0.0 because "-0" would be read as the whole number
-// 0.
-std::string number(double value) { return fmt::format("{}", value + 0.0); }
-std::string triple(const glm::dvec3& v) { return fmt::format("[{}, {}, {}]", number(v.x), number(v.y), number(v.z)); }
+// The one of that name, or the first for "".
+template <typename List>
+const auto& named(const List& list, const std::string& wanted, const char* what, const std::string& scene) {
+  std::vector<std::string> names;
+  for (const auto& one : list) {
+    if (wanted.empty() || one.name == wanted) return one;
+    names.push_back(one.name);
+  }
+  fail("{} '{}': scene '{}' has {}", what, one_line(wanted, 60), scene,
+       names.empty() ? fmt::format("no {}s", what) : fmt::format("{}", fmt::join(names, ", ")));
+}
 
-// A TOML basic string.
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
+// A map lies where the scene says, from the scene's own directory; else, moved together with it, beside it.
+std::string find_beside(const fs::path& directory, const fs::path& said) {
+  std::error_code error;
+  const fs::path whole = fs::absolute(directory / said, error).lexically_normal();
+  const fs::path beside = fs::absolute(directory / said.filename(), error).lexically_normal();
+  return (!fs::exists(whole, error) && fs::exists(beside, error) ? beside : whole).string();
+}
+
+// Values as TOML; nothing for what is not said. The shortest text that reads back as the same number; + 0.0 because
+// "-0" would be read as the whole number 0.
+std::string toml(double value) { return fmt::format("{}", value + 0.0); }
+std::string toml(int value) { return fmt::format("{}", value); }
+std::string toml(bool value) { return value ? "true" : "false"; }
+std::string toml(const glm::dvec3& v) { return fmt::format("[{}, {}, {}]", toml(v.x), toml(v.y), toml(v.z)); }
+std::string toml(const std::string& text) {
+  std::string out;
   for (const char c : text) {
-    if (c == '"' || c == '\\')
-      out += '\\', out += c;
-    else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F)
-      out += fmt::format("\\u{:04X}", static_cast<unsigned>(c));
-    else
-      out += c;
+    if (c == '"' || c == '\\') out += '\\';
+    const bool control = static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
+    out += control ? fmt::format("\\u{:04X}", static_cast<unsigned>(c)) : std::string(1, c);
   }
-  return out + '"';
+  return '"' + out + '"';
+}
+template <typename T>
+std::string toml(const std::optional<T>& value) {
+  return value ? toml(*value) : "";
+}
+template <typename T>
+std::string toml(const std::vector<T>& values) {  // one to a line: a file's lines are not long
+  std::string out;
+  for (const T& value : values) out += (out.empty() ? "[" : ",\n  ") + toml(value);
+  return out.empty() ? out : out + "]";
 }
 
-const char* text(Phase phase) {
-  switch (phase) {
-    case Phase::henyey_greenstein: return "henyey_greenstein";
-    case Phase::cornette_shanks: return "cornette_shanks";
-    case Phase::draine: return "draine";
-    case Phase::double_hg: return "double_hg";
-    case Phase::rayleigh: return "rayleigh";
+struct Writer : Visitor {
+  std::string text;
+  std::vector<std::string> keys;
+
+  template <typename T>
+  void operator()(const char* key, const T& value, const Range& range, const char*, const More& more = {}) {
+    std::string said;
+    if (!range.choices.empty())
+      said = toml(std::string(range.choices[size_t(choice_of(range, value))]));
+    else if constexpr (!std::is_enum_v<T>)
+      said = toml(value);
+    if (said.empty() || said == "\"\"" || std::find(keys.begin(), keys.end(), more.besides) != keys.end()) return;
+    text += fmt::format("{} = {}\n", key, said);
+    keys.push_back(key);
   }
-  return "rayleigh";
-}
+};
 
 bool any(const glm::dvec3& v) { return v.x != 0.0 || v.y != 0.0 || v.z != 0.0; }
 
@@ -74,21 +104,14 @@ Medium* Scene::medium(const std::string& kind) {
   return const_cast<Medium*>(static_cast<const Scene*>(this)->medium(kind));
 }
 
-const View& Scene::view(const std::string& wanted) const {
-  std::vector<std::string> names;
-  for (const View& view : views) {
-    if (wanted.empty() || view.name == wanted) return view;
-    names.push_back(view.name);
-  }
-  fail("view '{}': scene '{}' has {}", one_line(wanted, 60), name,
-       names.empty() ? "no views" : fmt::format("{}", fmt::join(names, ", ")));
-}
+const View& Scene::view(const std::string& wanted) const { return named(views, wanted, "view", name); }
+const Path& Scene::path(const std::string& wanted) const { return named(paths, wanted, "path", name); }
 
 Scene load_scene(const std::string& name_or_file, const fs::path& scenes_directory) {
   if (name_or_file.empty()) fail("no scene named: known are {}", known_scenes(scenes_directory));
   fs::path path = name_or_file;
   if (name_or_file.find('\0') != std::string::npos) fail("scene file {}: not a file name", one_line(name_or_file));
-  if (plain_name(name_or_file)) {
+  if (plain_name(name_or_file) && name_or_file.find('.') == std::string::npos) {
     path = scenes_directory / (name_or_file + ".toml");
     std::error_code error;
     if (!fs::exists(path, error))
@@ -96,86 +119,45 @@ Scene load_scene(const std::string& name_or_file, const fs::path& scenes_directo
            known_scenes(scenes_directory));
   }
   const std::string shown = one_line(path.string());
+  const bool picture = strcasecmp(path.extension().c_str(), ".png") == 0;
   std::optional<std::string> text;
   try {
-    text = path.extension() == ".png" ? image::read_png_text(path, "welkin.scene") : read_file(path, kLargestFile);
+    text = picture ? image::read_png_text(path, "welkin.scene") : read_file(path, kLargestFile);
   } catch (const Error& error) {  // those name the file as it is, line breaks included
     throw Error(error.exit_code, one_line(error.what()));
   }
   if (!text) fail("scene file {}: this picture carries no scene; accepted is a .png that a chapter wrote", shown);
-  Scene scene = parse_scene(*text, path.extension() == ".png" ? shown + " (embedded scene)" : shown);
-  // A height map lies beside the scene that names it.
-  if (scene.terrain && !scene.terrain->height_map.empty()) {
-    const fs::path map = path.parent_path() / scene.terrain->height_map;  // an absolute name stays as it is
-    std::error_code error;
-    const fs::path whole = fs::absolute(map, error);
-    scene.terrain->height_map = (error ? map : whole).lexically_normal().string();
-  }
+  Scene scene = parse_scene(*text, picture ? shown + " (embedded scene)" : shown);
+  if (scene.terrain && !scene.terrain->height_map.empty())
+    scene.terrain->height_map = find_beside(path.parent_path(), scene.terrain->height_map);
   return scene;
 }
 
+std::string portable_path(const std::string& file, const fs::path& directory) {
+  std::error_code error;
+  const fs::path from = fs::absolute(directory, error).lexically_normal(),
+                 to = fs::absolute(file, error).lexically_normal();
+  const auto split = std::mismatch(from.begin(), from.end(), to.begin(), to.end()).first;
+  const std::string way = to.lexically_relative(from).string();
+  const bool near = std::distance(from.begin(), split) > 1;  // more than the root in common
+  return file.empty() || (near && way.size() <= 400 && one_line(way) == way) ? way : to.filename().string();
+}
+
 std::string write_scene(const Scene& scene) {
-  std::string out = fmt::format("version = 1\nname = {}\n\n", quoted(scene.name));
-  const auto line = [&out](const char* key, const std::string& value) { out += fmt::format("{} = {}\n", key, value); };
-  out += "[planet]\n";
-  line("ground_radius_km", number(scene.planet.ground_radius_km));
-  line("top_radius_km", number(scene.planet.top_radius_km));
-  line("ground_albedo", triple(scene.planet.ground_albedo));
-  for (const Medium& medium : scene.media) {
-    out += "\n[[medium]]\n";
-    line("kind", quoted(medium.kind));
-    if (medium.kind != "ozone") line("scattering_per_km", triple(medium.scattering_per_km));
-    if (medium.kind != "rayleigh") line("absorption_per_km", triple(medium.absorption_per_km));
-    if (medium.profile == Profile::tent) {
-      line("profile", "\"tent\"");
-      line("peak_altitude_km", number(medium.peak_altitude_km));
-      line("half_width_km", number(medium.half_width_km));
-    } else {
-      line("profile", "\"exponential\"");
-      line("scale_height_km", number(medium.scale_height_km));
-    }
-    if (medium.kind == "mie") {  // all of them: --set mie.phase can switch to a form that needs the others
-      line("phase", quoted(text(medium.phase)));
-      line("g", number(medium.g));
-      line("draine_alpha", number(medium.draine_alpha));
-      line("second_g", number(medium.second_g));
-      line("second_weight", number(medium.second_weight));
-    }
-  }
-  // Angles, never the date they came from: "today" would be another sun tomorrow.
-  out += "\n[sun]\n";
-  line("zenith_deg", number(scene.sun.zenith_deg));
-  line("azimuth_deg", number(scene.sun.azimuth_deg));
-  line("angular_radius_deg", number(scene.sun.angular_radius_deg));
-  line("irradiance", triple(scene.sun.irradiance));
-  line("disc", scene.sun.disc ? "true" : "false");
-  for (const View& view : scene.views) {
-    out += "\n[[view]]\n";
-    line("name", quoted(view.name));
-    line("altitude_km", number(view.altitude_km));
-    line("azimuth_deg", number(view.azimuth_deg));
-    line("elevation_deg", number(view.elevation_deg));
-    line("fov_deg", number(view.fov_deg));
-  }
-  if (scene.terrain) {
-    const Terrain& terrain = *scene.terrain;
-    out += "\n[terrain]\n";
-    line("extent_km", number(terrain.extent_km));
-    line("height_km", number(terrain.height_km));
-    if (!terrain.height_map.empty())
-      line("height_map", quoted(terrain.height_map));
-    else
-      line("size", fmt::format("{}", terrain.size)), line("seed", fmt::format("{}", terrain.seed));
-    line("shadows", terrain.shadows ? "true" : "false");
-    if (terrain.signs_azimuth_deg) line("signs_azimuth_deg", number(*terrain.signs_azimuth_deg));
-  }
-  out += "\n[post]\n";
-  line("exposure", scene.post.manual ? "\"manual\"" : "\"auto\"");
-  line("exposure_ev", number(scene.post.exposure_ev));
-  line("compensation_ev", number(scene.post.compensation_ev));
-  if (!scene.settings.empty()) out += "\n[settings]\n";
-  for (const auto& [knob, value] : scene.settings) line(quoted(knob).c_str(), quoted(value));
-  return out;
+  Writer writer{.text = "version = 1\n"};
+  Scene written = scene;
+  fields(writer, written, written);
+  sections(written, [&](const char* name, auto& member) {
+    constexpr bool many = requires { member.emplace_back(); };
+    each_of(member, [&](auto& section) {
+      writer.text += fmt::format(many ? "\n[[{}]]\n" : "\n[{}]\n", name);
+      writer.keys.clear();
+      fields(writer, section, written);
+    });
+  });
+  if (!scene.settings.empty()) writer.text += "\n[settings]\n";
+  for (const auto& [knob, value] : scene.settings) writer.text += fmt::format("{} = {}\n", toml(knob), toml(value));
+  return writer.text;
 }
 
 std::vector<Constituent> constituents(const Scene& scene) {
@@ -195,9 +177,9 @@ std::vector<Constituent> constituents(const Scene& scene) {
                   : any(sun.irradiance) ? "sun.disc = true"
                                         : "sun.irradiance is 0"});
   const bool ground = any(scene.planet.ground_albedo);
-  list.push_back({"ground", ground,
-                  fmt::format("planet.ground_albedo is {}{}", ground ? "" : "0: the ground reflects nothing",
-                              ground ? triple(scene.planet.ground_albedo) : "")});
+  list.push_back(
+      {"ground", ground,
+       ground ? "planet.ground_albedo is above 0" : "planet.ground_albedo is 0: the ground reflects nothing"});
   return list;
 }
 

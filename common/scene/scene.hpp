@@ -2,7 +2,7 @@
 //
 // Units: km, km^-1, degrees where a name says _deg. Radiance is per unit of solar irradiance at the top of the
 // atmosphere. Frame at a view: x = east, y = north, z = up; azimuth in degrees clockwise from north (0 = north, 90 =
-// east).
+// east). What a file may say of each, its ranges and meanings, is one table: fields.cpp.
 #pragma once
 
 #include <filesystem>
@@ -13,6 +13,9 @@
 #include <vector>
 
 namespace welkin {
+
+// Nothing is placed higher: a camera, a view, the beginning of a probe's ray. Two and a half times the Moon's distance.
+inline constexpr double kHighest_km = 1e6;
 
 enum class Profile { exponential, tent };
 enum class Phase { henyey_greenstein, cornette_shanks, draine, double_hg, rayleigh };
@@ -42,12 +45,11 @@ struct Planet {
 };
 
 struct Sun {
-  // Either angles at the views, or date + time + place, from which the angles are computed (sun.hpp).
+  // At the scene's place, when its time is 0. A file may give date and time instead (sun.hpp), from which they follow.
   double zenith_deg = 45.0;
   double azimuth_deg = 180.0;
-  std::optional<std::string> utc;  // "2026-06-21T10:30:00" or "today 10:30" / "now"
-  double latitude_deg = 0.0;       // north positive
-  double longitude_deg = 0.0;      // east positive
+  // Of the scene's place, north and east positive. Without a latitude the sun stands still: nobody knows where it goes.
+  std::optional<double> latitude_deg, longitude_deg;
   double angular_radius_deg = 0.2667;
   glm::dvec3 irradiance{1.0};
   bool disc = true;
@@ -56,11 +58,21 @@ struct Sun {
 
 struct View {
   std::string name = "view";
-  double altitude_km = 0.0005;  // above the ground
-  double azimuth_deg = 180.0;   // look direction
-  double elevation_deg = 10.0;  // above the horizontal
-  double fov_deg = 60.0;        // vertical
+  double east_km = 0.0, north_km = 0.0;  // of the scene's place, to where the camera is overhead: along the ground
+  double altitude_km = 0.0005;           // above the ground
+  double azimuth_deg = 180.0;            // look direction
+  double elevation_deg = 10.0;           // above the horizontal; 90 is straight up
+  double fov_deg = 60.0;                 // vertical
   bool operator==(const View&) const = default;
+};
+
+// A moving camera: views of the scene, passed one after the other (path.hpp).
+struct Path {
+  std::string name = "path";
+  std::vector<std::string> views;  // at least two
+  std::vector<double> time_s;      // when each is passed, rising
+  std::vector<double> moment_s;    // the scene's time then; empty: it stands still
+  bool operator==(const Path&) const = default;
 };
 
 // Relief on the sphere, from a height map that is a square around the scene's place. Chapters below 11 have none.
@@ -84,18 +96,22 @@ struct Post {
 
 struct Scene {
   std::string name = "earth";
+  double time_s = 0.0;  // the moment shown, after that of the sun's angles; --time and the window's slider move it
   Planet planet;
   std::vector<Medium> media;  // absent medium: it does not exist (no term, no variant)
   Sun sun;
   std::vector<View> views;  // at least one; the first is the default
+  std::vector<Path> paths;
   std::optional<Terrain> terrain;
   Post post;
-  std::vector<std::pair<std::string, std::string>> settings;  // [settings] knob = value, applied before --set
+  // [settings] knob = value, applied before --set: knobs of chapters only, those of the scene are its fields
+  std::vector<std::pair<std::string, std::string>> settings;
+  bool operator==(const Scene&) const = default;
 
   const Medium* medium(const std::string& kind) const;  // nullptr if the scene has none
   Medium* medium(const std::string& kind);
   const View& view(const std::string& name) const;  // "" = first; throws listing the names
-  bool operator==(const Scene&) const = default;
+  const Path& path(const std::string& name) const;  // throws listing the names
 };
 
 // Names that need no file: earth, alien, today, noon, sunset, twilight, orbit (chapters/scenes/NAME.toml), a path to a
@@ -105,8 +121,18 @@ Scene load_scene(const std::string& name_or_file, const std::filesystem::path& s
 // Parses TOML text strictly; `file` names it in messages.
 Scene parse_scene(const std::string& text, const std::string& file);
 
-// The scene as TOML that parse_scene reads back to the same values (used by restoring screenshots).
+// The scene as TOML that parse_scene reads back to the same scene (used by restoring screenshots).
 std::string write_scene(const Scene& scene);
+
+// The number of views and settings a file may have. The view that a picture adds to its scene is not counted.
+inline constexpr size_t kMostViews = 64, kMostSettings = 256;
+inline constexpr const char* kRestoredView = "restored";
+// What is said where time should pass and nobody knows how the sun moves.
+inline constexpr const char* kNeedsLatitude = "accepted beside latitude_deg in [sun], about whose pole the sun turns";
+
+// The name of a file as a scene in `directory` may carry it: the way from there, or the file's own name where that
+// would tell how the disk around both is laid out. A scene finds it by either.
+std::string portable_path(const std::string& file, const std::filesystem::path& directory);
 
 // One effect of the scene and whether it is simulated, for --explain: "ozone", on, "medium 'ozone' in scene".
 struct Constituent {

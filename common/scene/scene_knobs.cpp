@@ -1,64 +1,61 @@
 // Scene values as knobs. See scene_knobs.hpp.
 #include "common/scene/scene_knobs.hpp"
 
-namespace welkin {
+#include "common/scene/fields.hpp"
 
-std::vector<Knob> scene_knobs(const Scene& scene) {
-  std::vector<Knob> knobs{{.name = "sun.zenith_deg",
-                           .unit = "deg",
-                           .meaning = "angle of the sun from the zenith",
-                           .minimum = 0.0,
-                           .maximum = 180.0,
-                           .initial = scene.sun.zenith_deg},
-                          {.name = "sun.azimuth_deg",
-                           .unit = "deg",
-                           .meaning = "azimuth of the sun, clockwise from north",
-                           .minimum = 0.0,
-                           .maximum = 360.0,
-                           .initial = scene.sun.azimuth_deg},
-                          {.name = "sun.disc",
-                           .meaning = "draw the sun's disc",
-                           .initial = scene.sun.disc ? 1.0 : 0.0,
-                           .choices = {"off", "on"},
-                           .rebuilds = true},
-                          {.name = "ground.albedo",
-                           .meaning = "share of light the ground reflects, all channels",
-                           .minimum = 0.0,
-                           .maximum = 1.0,
-                           .initial = scene.planet.ground_albedo.x},
-                          {.name = "exposure.ev",
-                           .unit = "stops",
-                           .meaning = "exposure of the 8-bit picture",
-                           .minimum = -20.0,
-                           .maximum = 30.0,
-                           .initial = scene.post.exposure_ev}};
-  if (const Medium* mie = scene.medium("mie"); mie != nullptr) {
-    const int phase = mie->phase == Phase::rayleigh ? 0 : static_cast<int>(mie->phase);
-    knobs.push_back({.name = "mie.phase",
-                     .meaning = "phase function of the aerosol",
-                     .initial = static_cast<double>(phase),
-                     .choices = {"henyey_greenstein", "cornette_shanks", "draine", "double_hg"},
-                     .rebuilds = true});
-    knobs.push_back({.name = "mie.g",
-                     .meaning = "asymmetry of the aerosol's phase function",
-                     .minimum = -0.999,
-                     .maximum = 0.999,
-                     .initial = mie->g});
+namespace welkin {
+namespace {
+
+// Collects the knobs of the fields that pass, or writes those that were set into them.
+struct KnobVisitor : Visitor {
+  std::vector<Knob> knobs;
+  const Settings* settings = nullptr;
+
+  template <typename T>
+  void operator()(const char*, T& value, const Range& range, const char* meaning, const More& more = {}) {
+    const bool set = settings != nullptr && *more.knob && settings->has(more.knob) && settings->was_set(more.knob);
+    Knob knob{.name = more.knob, .unit = range.unit, .meaning = meaning};
+    if constexpr (std::is_same_v<T, double>) {
+      if (set) value = more.azimuth ? turned(settings->number(more.knob)) : settings->number(more.knob);
+      knob.initial = value, knob.minimum = more.azimuth ? 0.0 : range.minimum, knob.maximum = range.maximum;
+    } else if constexpr (std::is_same_v<T, glm::dvec3>) {
+      if (set) value = glm::dvec3(settings->number(more.knob));
+      knob.initial = value.x, knob.minimum = range.minimum, knob.maximum = range.maximum;
+    } else {
+      Range choices = range;
+      if (choices.choices.empty()) choices.choices = {"off", "on"};
+      if (set) choose(choices, settings->integer(more.knob), value);
+      knob.initial = choice_of(choices, value), knob.choices = {choices.choices.begin(), choices.choices.end()};
+      knob.rebuilds = true;  // what is chosen is compiled into shaders
+    }
+    if (*more.knob) knobs.push_back(std::move(knob));
   }
-  return knobs;
+};
+
+void visit(KnobVisitor& visitor, Scene& scene) {
+  sections(scene, [&](const char*, auto& member) {
+    each_of(member, [&](auto& section) { fields(visitor, section, scene); });
+  });
+}
+
+}  // namespace
+
+std::vector<Knob> scene_knobs(const Scene& scene, bool metered) {
+  KnobVisitor visitor;
+  Scene copy = scene;
+  visit(visitor, copy);
+  if (!metered)
+    std::erase_if(visitor.knobs, [](const Knob& knob) {
+      return knob.name == "exposure.mode" || knob.name == "exposure.compensation";
+    });
+  return visitor.knobs;
 }
 
 void apply_scene_knobs(const Settings& settings, Scene& scene) {
-  const auto set = [&](const char* name) { return settings.has(name) && settings.was_set(name); };
-  if (set("sun.zenith_deg")) scene.sun.zenith_deg = settings.number("sun.zenith_deg");
-  if (set("sun.azimuth_deg")) scene.sun.azimuth_deg = settings.number("sun.azimuth_deg");
-  if (set("sun.disc")) scene.sun.disc = settings.on("sun.disc");
-  if (set("ground.albedo")) scene.planet.ground_albedo = glm::dvec3(settings.number("ground.albedo"));
-  if (set("exposure.ev")) scene.post.exposure_ev = settings.number("exposure.ev"), scene.post.manual = true;
-  if (Medium* mie = scene.medium("mie"); mie != nullptr) {
-    if (set("mie.phase")) mie->phase = static_cast<Phase>(settings.integer("mie.phase"));
-    if (set("mie.g")) mie->g = settings.number("mie.g");
-  }
+  KnobVisitor visitor{.settings = &settings};
+  if (settings.has("exposure.ev") && settings.was_set("exposure.ev"))
+    scene.post.manual = true;  // or as exposure.mode says
+  visit(visitor, scene);
 }
 
 }  // namespace welkin

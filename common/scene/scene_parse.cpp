@@ -1,206 +1,191 @@
-// Reading a scene: strict TOML. Every message is one line with file:line:column (both counted from 1) and
-// what is accepted. The format, its units, ranges and defaults are in docs/scenes.md.
-#include <set>
+// Reading a scene: strict TOML. Every message is one line with file:line:column (both counted from 1) and what is
+// accepted. An absent key leaves the default. What a file may say is the table of scene_table.cpp.
+#include <cmath>
 
-#include "common/scene/scene.hpp"
+#include "common/scene/fields.hpp"
+#include "common/scene/scene_knobs.hpp"
 #include "common/scene/strict_toml.hpp"
-#include "common/scene/sun.hpp"
 
 namespace welkin {
 namespace {
 
 using namespace strict_toml;
 
+template <typename T>
+constexpr bool is_list = requires(T list) {
+  list.push_back(list[0]);
+}
+&&!std::is_same_v<T, std::string>;
+template <typename T>
+constexpr bool is_triple = std::is_same_v<T, glm::dvec3> || std::is_same_v<T, std::optional<glm::dvec3>>;
+
 constexpr int kVersion = 1;
-constexpr const char* kSections = "planet, medium, sun, view, terrain, post, settings";
-// A dotted key nests one table per dot, and tables are destroyed recursively: bounded lines bound the
-// recursion.
-constexpr size_t kLongestLine = 1024;
-constexpr size_t kMostViews = 64, kMostSettings = 256, kLongestValue = 200;
+// A dotted key nests one table per dot, and tables are destroyed recursively: bounded lines bound the recursion.
+constexpr size_t kLongestLine = 1024, kLongestName = 64, kLongestValue = 200;
 
-void check_top(const Section& root) {
-  if (!has(root, "version"))
-    fail_at(*root.file, root.table->source(), "no version", fmt::format("a scene says version = {}", kVersion));
-  const toml::node& version = *root.table->get("version");
-  if (!version.is_integer() || version.as_integer()->get() != kVersion)
-    fail_at(*root.file, version.source(), fmt::format("version {}", describe(version)),
-            fmt::format("this build knows version {}", kVersion));
-  const toml::key* key =
-      first_unknown(root, {"version", "name", "planet", "medium", "sun", "view", "terrain", "post", "settings"});
-  if (!key) return;
-  for (const char* later : {"clouds", "fog", "smoke", "night"})
-    if (*key == later)
-      fail_at(*root.file, key->source(), fmt::format("section '{}'", later),
-              fmt::format("not known to this build, which knows {}", kSections));
-  fail_at(*root.file, key->source(), fmt::format("unknown section or key '{}'", one_line(key->str(), 60)),
-          fmt::format("known are version, name, {}", kSections));
-}
+// One section of the file, read by the rows of the table as they pass.
+class Reader : public Visitor {
+ public:
+  static constexpr bool reading = true;
 
-void read_planet(const Section& section, Planet& planet) {
-  check_keys(section, {"ground_radius_km", "top_radius_km", "ground_albedo"});
-  read(section, "ground_radius_km", planet.ground_radius_km, {100, 1e5, "km"});
-  if (has(section, "ground_radius_km") != has(section, "top_radius_km"))
-    fail_at(*section.file, section.table->source(), "planet with one radius",
-            "accepted is ground_radius_km and top_radius_km together, or neither");
-  const double thinnest = planet.ground_radius_km + 1, thickest = planet.ground_radius_km + 2000;
-  read(section, "top_radius_km", planet.top_radius_km, {thinnest, thickest, "km (1 to 2000 km above the ground)"});
-  read(section, "ground_albedo", planet.ground_albedo, {0, 1});
-}
+  Reader(std::string name, const toml::table& table, const std::string& file)
+      : Visitor{name}, name_(std::move(name)), table_(table), file_(file) {}
 
-constexpr Range kCoefficient{0, 100, "km^-1"};
-
-void read_absorption(const Section& section, Medium& medium) {
-  check_exclusive(section, "absorption_per_km", "extinction_per_km");
-  read(section, "absorption_per_km", medium.absorption_per_km, kCoefficient);
-  if (!has(section, "extinction_per_km")) return;
-  glm::dvec3 extinction(0.0);
-  read(section, "extinction_per_km", extinction, kCoefficient);
-  medium.absorption_per_km = extinction - medium.scattering_per_km;
-  for (int i = 0; i < 3; ++i)
-    if (medium.absorption_per_km[i] < 0)
-      fail_at(*section.file, place(section, "extinction_per_km"),
-              fmt::format("medium.extinction_per_km[{}] = {} is less than scattering_per_km[{}] = {}", i, extinction[i],
-                          i, medium.scattering_per_km[i]),
-              "accepted is extinction = scattering + absorption, so at least the scattering");
-}
-
-void need(const Section& section, std::string_view key, const std::string& why) {
-  if (!has(section, key))
-    fail_at(*section.file, section.table->source(), fmt::format("no {} in {}", key, section.name), why);
-}
-
-// What a medium may say follows from its kind, so that nothing can be said that would not be simulated.
-Medium read_medium(const Section& section) {
-  need(section, "kind", "accepted is kind = \"rayleigh\", \"mie\" or \"ozone\"");
-  const size_t kind = read_choice(section, "kind", {"rayleigh", "mie", "ozone"}, 0);
-  const Section named{section.table,
-                      kind == 0   ? "medium 'rayleigh'"
-                      : kind == 1 ? "medium 'mie'"
-                                  : "medium 'ozone'",
-                      section.file};
-  Medium medium;
-  if (kind == 0) {
-    medium.kind = "rayleigh";
-    check_keys(named, {"kind", "scattering_per_km", "profile", "scale_height_km", "phase"});
-    need(named, "scattering_per_km", "accepted is " + text_of(kCoefficient));
-    read_choice(section, "phase", {"rayleigh"}, 0);
-  } else if (kind == 1) {
-    medium.kind = "mie";
-    medium.scale_height_km = 1.2;
-    check_keys(named, {"kind", "scattering_per_km", "absorption_per_km", "extinction_per_km", "profile",
-                       "scale_height_km", "phase", "g", "draine_alpha", "second_g", "second_weight"});
-    need(named, "scattering_per_km", "accepted is " + text_of(kCoefficient));
-    constexpr Phase kPhases[] = {Phase::henyey_greenstein, Phase::cornette_shanks, Phase::draine, Phase::double_hg};
-    medium.phase =
-        kPhases[read_choice(section, "phase", {"henyey_greenstein", "cornette_shanks", "draine", "double_hg"}, 1)];
-    medium.g = 0.8;
-    read(section, "g", medium.g, {-0.999, 0.999});
-    read(section, "draine_alpha", medium.draine_alpha, {0, 100});
-    read(section, "second_g", medium.second_g, {-0.999, 0.999});
-    read(section, "second_weight", medium.second_weight, {0, 1});
-  } else {
-    medium.kind = "ozone";
-    medium.profile = Profile::tent;
-    check_keys(named,
-               {"kind", "absorption_per_km", "extinction_per_km", "profile", "peak_altitude_km", "half_width_km"});
-    if (!has(section, "extinction_per_km")) need(named, "absorption_per_km", "accepted is " + text_of(kCoefficient));
+  template <typename T>
+  void operator()(const char* key, T& value, const Range& range, const char*, const More& more = {}) {
+    known_.push_back(key);
+    const toml::node* node = table_.get(key);
+    if (!node && more.required && missing_.empty()) {
+      missing_ = fmt::format("no {} in {}", key, title), needed_ = accepted(value, range);
+      if (!range.choices.empty()) fail_at(file_, table_.source(), missing_, needed_);  // what else is known follows
+    }
+    if (!node) return;
+    must(!given(more.besides), key, fmt::format("{} given beside {}", full_name(key), more.besides),
+         "accepted is one of the two");
+    read(key, *node, value, range);
+    if constexpr (std::is_same_v<T, double>) value = more.azimuth ? turned(value) : value;
+    if constexpr (std::is_same_v<T, std::optional<double>>) value = more.azimuth ? turned(*value) : *value;
   }
-  read(section, "scattering_per_km", medium.scattering_per_km, kCoefficient);
-  read_absorption(section, medium);
-  read_choice(section, "profile", {kind == 2 ? "tent" : "exponential"}, 0);
-  read(section, "scale_height_km", medium.scale_height_km, {0.01, 1000, "km"});
-  read(section, "peak_altitude_km", medium.peak_altitude_km, {0, 2000, "km"});
-  read(section, "half_width_km", medium.half_width_km, {0.01, 2000, "km"});
-  return medium;
-}
-
-void read_sun(const Section& section, Sun& sun) {
-  check_keys(section, {"zenith_deg", "azimuth_deg", "utc", "latitude_deg", "longitude_deg", "angular_radius_deg",
-                       "irradiance", "disc"});
-  read(section, "zenith_deg", sun.zenith_deg, {0, 180, "deg"});
-  read_azimuth(section, "azimuth_deg", sun.azimuth_deg);
-  read(section, "angular_radius_deg", sun.angular_radius_deg, {0.001, 45, "deg"});
-  read(section, "irradiance", sun.irradiance, {0, 1e6});
-  read(section, "disc", sun.disc);
-  for (const char* key : {"latitude_deg", "longitude_deg"}) {
-    const char *given = has(section, key) ? key : "utc", *missing = has(section, key) ? "utc" : key;
-    if (has(section, given) && !has(section, missing))
-      fail_at(*section.file, place(section, given), fmt::format("sun.{} without {}", given, missing),
-              "accepted is zenith_deg and azimuth_deg, or utc, latitude_deg and longitude_deg together");
+  bool given(const char* key) const { return table_.contains(key); }
+  void must(bool good, const char* key, const std::string& what, const std::string& accepted) const {
+    const toml::node* node = table_.get(key);
+    if (!good && missing_.empty()) fail_at(file_, node ? node->source() : table_.source(), what, accepted);
   }
-  if (!has(section, "utc")) return;
-  check_exclusive(section, "utc", "zenith_deg");
-  check_exclusive(section, "utc", "azimuth_deg");
-  read(section, "latitude_deg", sun.latitude_deg, {-90, 90, "deg"});
-  read(section, "longitude_deg", sun.longitude_deg, {-360, 360, "deg"});
-  const toml::node& utc = *section.table->get("utc");
-  if (!utc.is_string()) fail_value(section, "utc", utc, "quoted text, for example \"2026-06-21T10:30:00\"");
-  sun.utc = utc.as_string()->get();
-  SunAngles angles;
-  try {
-    angles = sun_angles(*sun.utc, sun.latitude_deg, sun.longitude_deg);
-  } catch (const Error& error) {
-    fail_at(*section.file, utc.source(), "sun.utc", error.what());
+  // The key furthest up in the file that no row of the table has (`more` keys are known, too); or a missing one.
+  void finish(const char* what, const std::vector<const char*>& more = {}) {
+    known_.insert(known_.end(), more.begin(), more.end());
+    for (const toml::key* key : keys_of(table_))
+      if (std::find(known_.begin(), known_.end(), key->str()) == known_.end())
+        fail_at(file_, key->source(),
+                fmt::format("unknown {} '{}'{}{}", what, one_line(key->str(), 60), title.empty() ? "" : " in ", title),
+                fmt::format("known are {}", fmt::join(known_, ", ")));
+    if (!missing_.empty()) fail_at(file_, table_.source(), missing_, needed_);
   }
-  sun.zenith_deg = angles.zenith_deg;
-  sun.azimuth_deg = angles.azimuth_deg;
-}
 
-View read_view(const Section& section, double sun_azimuth_deg) {
-  check_keys(section, {"name", "altitude_km", "azimuth_deg", "azimuth_from_sun_deg", "elevation_deg", "fov_deg"});
-  need(section, "name", "every [[view]] has one, for example name = \"horizon\"");
-  View view;
-  read_name(section, "name", view.name);
-  read(section, "altitude_km", view.altitude_km, {0, 1e6, "km"});
-  check_exclusive(section, "azimuth_deg", "azimuth_from_sun_deg");
-  read_azimuth(section, "azimuth_deg", view.azimuth_deg);
-  read_azimuth(section, "azimuth_from_sun_deg", view.azimuth_deg, sun_azimuth_deg);
-  read(section, "elevation_deg", view.elevation_deg, {-90, 90, "deg"});
-  read(section, "fov_deg", view.fov_deg, {1, 170, "deg"});
-  return view;
-}
-
-// Whether the map can be read is found out when it is drawn: most chapters have no terrain.
-Terrain read_terrain(const Section& section) {
-  check_keys(section, {"height_map", "extent_km", "height_km", "size", "seed", "shadows", "signs_azimuth_deg"});
-  Terrain terrain;
-  if (has(section, "height_map")) {
-    const toml::node& map = *section.table->get("height_map");
-    if (map.is_string()) terrain.height_map = map.as_string()->get();
-    if (terrain.height_map.empty() || terrain.height_map.size() > 1000 ||
-        one_line(terrain.height_map) != terrain.height_map)
-      fail_value(section, "height_map", map, "the name of a 16-bit grayscale PNG file, quoted");
-    check_exclusive(section, "height_map", "size");
-    check_exclusive(section, "height_map", "seed");
+ private:
+  std::string full_name(std::string_view key) const {
+    return name_.empty() ? std::string(key) : fmt::format("{}.{}", name_, key);
   }
-  read(section, "extent_km", terrain.extent_km, {1, 1000, "km"});
-  read(section, "height_km", terrain.height_km, {0, 20, "km"});
-  read(section, "size", terrain.size, {64, 4096, "samples"});
-  read(section, "seed", terrain.seed, {0, 1e6});
-  read(section, "shadows", terrain.shadows);
-  if (has(section, "signs_azimuth_deg"))
-    read_azimuth(section, "signs_azimuth_deg", terrain.signs_azimuth_deg.emplace());
-  return terrain;
+
+  template <typename T>
+  static std::string accepted(const T&, const Range& range) {
+    const std::string numbers = text_of(range), name = fmt::format("1 to {} letters, digits, _, - or .", range.maximum);
+    if (!range.choices.empty()) return fmt::format("accepted is one of \"{}\"", fmt::join(range.choices, "\", \""));
+    if (*range.text) return fmt::format("accepted is {}", range.text);
+    if constexpr (std::is_same_v<T, std::vector<double>>)
+      return "accepted are up to 64, [a, b, ...], numbers from " + numbers;
+    if constexpr (std::is_same_v<T, std::vector<std::string>>)
+      return "accepted are up to 64, [a, b, ...], names of " + name;
+    if constexpr (std::is_same_v<T, bool>) return "accepted is true or false";
+    if constexpr (std::is_same_v<T, std::string>) return "accepted is quoted text of " + name;
+    if constexpr (std::is_same_v<T, int>) return "accepted is a whole number from " + numbers;
+    return "accepted is a number from " + numbers + (is_triple<T> ? " or three of them, [r, g, b]" : "");
+  }
+  template <typename T>
+  [[noreturn]] void refuse(std::string_view key, const toml::node& node, const T& value, const Range& range) const {
+    fail_at(file_, node.source(), fmt::format("{} = {}", full_name(key), describe(node)), accepted(value, range));
+  }
+
+  template <typename T>
+  void read(const std::string& key, const toml::node& node, std::optional<T>& value, const Range& range) const {
+    read(key, node, value.emplace(), range);
+  }
+  template <typename T>
+  void read(const std::string& key, const toml::node& node, std::vector<T>& value, const Range& range) const {
+    const toml::array* array = node.as_array();
+    if (!array || array->empty() || array->size() > kMostViews) refuse(key, node, value, range);
+    for (const toml::node& one : *array) read(key, one, value.emplace_back(), range);
+  }
+  template <typename T>
+  void read(const std::string& key, const toml::node& node, T& value, const Range& range) const {
+    if (!range.choices.empty()) {
+      const auto same = [&](const char* choice) { return node.is_string() && node.as_string()->get() == choice; };
+      const auto found = std::find_if(range.choices.begin(), range.choices.end(), same);
+      if (found == range.choices.end()) refuse(key, node, value, range);
+      choose(range, int(found - range.choices.begin()), value);
+    } else if constexpr (std::is_same_v<T, bool>) {
+      if (!node.is_boolean()) refuse(key, node, value, range);
+      value = node.as_boolean()->get();
+    } else if constexpr (std::is_same_v<T, std::string>) {
+      value = node.is_string() ? node.as_string()->get() : "";
+      const bool good = *range.text ? one_line(value, value.size()) == value : plain_name(value);
+      if (!good || value.empty() || (range.maximum > 0 && value.size() > range.maximum))
+        refuse(key, node, value, range);
+    } else if constexpr (std::is_same_v<T, glm::dvec3>) {
+      const toml::array* array = node.as_array();
+      must(!array || array->size() == 3, key.c_str(),
+           fmt::format("{} has {} numbers", full_name(key), array ? array->size() : 0), accepted(value, range));
+      for (int i = 0; i < 3; ++i)
+        value[i] = array ? number(fmt::format("{}[{}]", key, i), *array->get(size_t(i)), value, range)
+                         : number(key, node, value, range);
+    } else if constexpr (!std::is_enum_v<T>) {
+      if (std::is_same_v<T, int> && !node.is_integer()) refuse(key, node, value, range);
+      value = static_cast<T>(number(key, node, value, range));
+    }
+  }
+  template <typename T>
+  double number(const std::string& key, const toml::node& node, const T& value, const Range& range) const {
+    const auto* whole = node.as_integer();
+    const double number = whole              ? static_cast<double>(whole->get())
+                          : node.is_number() ? node.as_floating_point()->get()
+                                             : NAN;
+    if (!(number >= range.minimum && number <= range.maximum)) refuse(key, node, value, range);
+    return number + 0.0;  // -0 becomes 0
+  }
+
+  const std::string name_;
+  const toml::table& table_;
+  const std::string& file_;
+  std::vector<const char*> known_;
+  std::string missing_, needed_;
+};
+
+// The tables of the file that are sections of this name, in their order.
+std::vector<const toml::table*> tables_of(const toml::table& root, const char* name, bool many,
+                                          const std::string& file) {
+  std::vector<const toml::table*> tables;
+  const toml::node* node = root.get(name);
+  const auto add = [&](const toml::node& one, bool right) {
+    if (!right)
+      fail_at(file, one.source(), fmt::format("{} = {}", name, describe(one)),
+              many ? fmt::format("accepted is [[{}]], a section for each", name)
+                   : fmt::format("accepted is a section, [{}]", name));
+    tables.push_back(one.as_table());
+  };
+  if (node && many && node->is_array())
+    for (const toml::node& one : *node->as_array()) add(one, one.is_table());
+  else if (node)
+    add(*node, !many && node->is_table());
+  return tables;
 }
 
-// Knob names belong to chapters, so only their spelling is checked here; the chapter checks the rest.
-void read_settings(const Section& section, Scene& scene) {
-  std::vector<const toml::key*> keys;
-  for (auto&& entry : *section.table) keys.push_back(&entry.first);
-  std::sort(keys.begin(), keys.end(), earlier);
+// The section that is read next: a member, or one more of it.
+template <typename T>
+auto& begin_section(T& member) {
+  if constexpr (is_list<T>)
+    return member.emplace_back();
+  else if constexpr (requires { member.emplace(); })
+    return member.emplace();
+  else
+    return member;
+}
+
+// Knobs of the scene are its fields, checked here; those of chapters are theirs to check, so only their spelling is.
+void read_settings(const toml::table& section, const std::string& file, Scene& scene) {
+  const std::vector<const toml::key*> keys = keys_of(section);
   if (keys.size() > kMostSettings)
-    fail_at(*section.file, keys[kMostSettings]->source(), fmt::format("{} settings", keys.size()),
+    fail_at(file, keys[kMostSettings]->source(), fmt::format("{} settings", keys.size()),
             fmt::format("accepted are up to {}", kMostSettings));
+  Settings knobs(scene_knobs(scene));
   for (const toml::key* key : keys) {
-    const std::string name(key->str());
-    const toml::node& node = *section.table->get(name);
-    const std::string shown = one_line(name, 60);
+    const std::string name(key->str()), shown = one_line(name, 60);
+    const toml::node& node = *section.get(name);
     if (node.is_table())
-      fail_at(*section.file, key->source(), fmt::format("settings.{} is a table", shown),
-              "a knob's name is quoted, for example \"mie.g\" = 0.8");
+      fail_at(file, key->source(), fmt::format("settings.{} is a table", shown),
+              "a knob's name is quoted, for example \"view.steps\" = 64");
     if (name.empty() || name.size() > kLongestName ||
         name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_.") != std::string::npos)
-      fail_at(*section.file, key->source(), fmt::format("knob name '{}'", shown),
+      fail_at(file, key->source(), fmt::format("knob name '{}'", shown),
               fmt::format("accepted is 1 to {} lower-case letters, digits, _ and .", kLongestName));
     std::string value;
     if (node.is_string()) value = node.as_string()->get();
@@ -208,10 +193,20 @@ void read_settings(const Section& section, Scene& scene) {
     if (node.is_number()) value = describe(node);
     const bool finite = !node.is_floating_point() || std::isfinite(node.as_floating_point()->get());
     if (!finite || value.empty() || value.size() > kLongestValue || one_line(value) != value)
-      fail_value(section, name, node,
-                 fmt::format("a finite number, true, false or quoted text of 1 to {} characters", kLongestValue));
-    scene.settings.emplace_back(name, value);
+      fail_at(
+          file, node.source(), fmt::format("settings.{} = {}", shown, describe(node)),
+          fmt::format("accepted is a finite number, true, false or quoted text of 1 to {} characters", kLongestValue));
+    if (!knobs.has(name)) {
+      scene.settings.emplace_back(name, value);
+      continue;
+    }
+    try {
+      knobs.set(name, value);
+    } catch (const Error& error) {
+      fail_at(file, node.source(), "settings", error.what());
+    }
   }
+  apply_scene_knobs(knobs, scene);
 }
 
 void check_lines(const std::string& text, const std::string& file) {
@@ -230,35 +225,31 @@ void check_lines(const std::string& text, const std::string& file) {
 Scene parse_scene(const std::string& text, const std::string& file) {
   check_lines(text, file);
   const toml::table table = parse_table(text, file);
-  const Section root{&table, "", &file};
-  check_top(root);
+  Reader root("", table, file);
+  const toml::node* version = table.get("version");
+  root.must(version, "", "no version", fmt::format("a scene says version = {}", kVersion));
+  root.must(version->is_integer() && version->as_integer()->get() == kVersion, "version",
+            fmt::format("version {}", describe(*version)), fmt::format("this build knows version {}", kVersion));
   Scene scene;
-  read_name(root, "name", scene.name);
-  for_table(root, "planet", [&](const Section& section) { read_planet(section, scene.planet); });
-  for_each_table(root, "medium", [&](const Section& section) {
-    const Medium medium = read_medium(section);
-    if (scene.medium(medium.kind))
-      fail_at(file, place(section, "kind"), fmt::format("second medium '{}'", medium.kind), "each kind at most once");
-    scene.media.push_back(medium);
+  fields(root, scene, scene);
+  std::vector<const char*> known{"version"};
+  sections(scene, [&](const char* name, auto&) { known.push_back(name); });
+  known.push_back("settings");
+  root.finish("section or key", known);
+  sections(scene, [&](const char* name, auto& member) {
+    for (const toml::table* section : tables_of(table, name, is_list<std::decay_t<decltype(member)>>, file)) {
+      Reader reader(name, *section, file);
+      fields(reader, begin_section(member), scene);
+      reader.finish("key");
+    }
   });
-  for_table(root, "sun", [&](const Section& section) { read_sun(section, scene.sun); });
-  std::set<std::string> names;
-  for_each_table(root, "view", [&](const Section& section) {
-    scene.views.push_back(read_view(section, scene.sun.azimuth_deg));
-    if (!names.insert(scene.views.back().name).second)
-      fail_at(file, place(section, "name"), fmt::format("second view '{}'", scene.views.back().name), "each name once");
-    if (names.size() > kMostViews)
-      fail_at(file, section.table->source(), "too many views", fmt::format("accepted are up to {}", kMostViews));
-  });
-  if (scene.views.empty()) fail_at(file, table.source(), "no views", "a scene has at least one [[view]]");
-  for_table(root, "terrain", [&](const Section& section) { scene.terrain = read_terrain(section); });
-  for_table(root, "post", [&](const Section& section) {
-    check_keys(section, {"exposure", "exposure_ev", "compensation_ev"});
-    scene.post.manual = read_choice(section, "exposure", {"auto", "manual"}, 0) == 1;
-    read(section, "exposure_ev", scene.post.exposure_ev, {-20, 30, "stops"});
-    read(section, "compensation_ev", scene.post.compensation_ev, {-20, 20, "stops"});
-  });
-  for_table(root, "settings", [&](const Section& section) { read_settings(section, scene); });
+  const auto counted = [](const View& view) { return view.name != kRestoredView; };
+  root.must(!scene.views.empty(), "", "no views", "a scene has at least one [[view]]");
+  root.must(size_t(std::count_if(scene.views.begin(), scene.views.end(), counted)) <= kMostViews, "view",
+            "too many views", fmt::format("accepted are up to {}", kMostViews));
+  root.must(scene.time_s == 0.0 || scene.sun.latitude_deg, "time_s", "time_s in a scene without a latitude",
+            kNeedsLatitude);
+  for (const toml::table* settings : tables_of(table, "settings", false, file)) read_settings(*settings, file, scene);
   return scene;
 }
 

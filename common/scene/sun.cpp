@@ -69,7 +69,7 @@ bool take_time(std::string_view text, DateTime& time) {
     }
   }
   take(text, "Z");
-  return text.empty() && time.hour <= 23 && time.minute <= 59 && time.second < 60.0;
+  return text.empty() && time.hour <= 23 && time.minute <= 59 && time.second < 61.0;  // 60: a leap second
 }
 
 DateTime present() {
@@ -120,8 +120,9 @@ SunAngles sun_angles(const std::string& utc, double latitude_deg, double longitu
   // Negative codes are errors; positive ones warn of a year without announced leap seconds, which is
   // accepted.
   double utc1 = 0, utc2 = 0, tai1 = 0, tai2 = 0, tt1 = 0, tt2 = 0;
-  if (eraDtf2d("UTC", time.year, time.month, time.day, time.hour, time.minute, time.second, &utc1, &utc2) < 0 ||
-      eraUtctai(utc1, utc2, &tai1, &tai2) < 0 || eraTaitt(tai1, tai2, &tt1, &tt2) < 0)
+  const int day = eraDtf2d("UTC", time.year, time.month, time.day, time.hour, time.minute, time.second, &utc1, &utc2);
+  if (day >= 2) fail("utc '{}': no leap second stands there; {}", one_line(utc, 60), kAccepted);
+  if (day < 0 || eraUtctai(utc1, utc2, &tai1, &tai2) < 0 || eraTaitt(tai1, tai2, &tt1, &tt2) < 0)
     fail("utc '{}': {}", one_line(utc, 60), kAccepted);
 
   // From the geocentre to the sun, in au, with annual aberration. Positive eraEpv00 code: outside 1900-2100

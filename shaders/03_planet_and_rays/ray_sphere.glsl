@@ -87,4 +87,13 @@ Chord robust_chord(float ground_radius_km, float altitude_km, float mu, float si
 }
 // [/robust]
 
+// [horizon]
+// The geometric horizon seen from altitude h: cosine and sine of its zenith angle, -sqrt(h (2R + h)) / r and R / r.
+vec2 horizon_at(float ground_radius_km, float altitude_km) {
+  float h = max(altitude_km, 0.0);
+  float r = ground_radius_km + h;
+  return vec2(-sqrt(h * (2.0 * ground_radius_km + h)) / r, ground_radius_km / r);
+}
+// [/horizon]
+
 #endif

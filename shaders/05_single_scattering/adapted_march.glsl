@@ -4,8 +4,8 @@
 
 #include "05_single_scattering/scale_count.glsl"
 
-// What a stretch of the march hands to the next one.
-struct Stretch {
+// What one panel of the march hands to the next.
+struct MarchState {
   vec3 radiance;
   vec3 column;     // xy: (rayleigh, mie) from the first point of the ray, km; z: ozone from the tangent to that point
 };
@@ -31,8 +31,8 @@ vec2 column_inside(vec4 rayleigh, vec4 mie, int i, vec2 floor_of) {
 // One panel of four Gauss nodes over counts [x_a, x_b]. Columns up to each node come from the panel's own densities, by
 // the integrals of their interpolating polynomial, so that the whole panel has one order. The nodes are the components
 // of a vec4, not elements of an array: registers, not memory.
-Stretch march_panel(Atmosphere atmosphere, AirRay ray, Line line, ScaleCount count, ScatteringTowardsEye scattering,
-                    Stretch before, float x_a, float x_b) {
+MarchState march_panel(Atmosphere atmosphere, AirRay ray, Line line, ScaleCount count, ScatteringTowardsEye scattering,
+                    MarchState before, float x_a, float x_b) {
   float dx = x_b - x_a;
   float radius_km = atmosphere.ground_radius_km;
   vec4 altitude;
@@ -49,7 +49,7 @@ Stretch march_panel(Atmosphere atmosphere, AirRay ray, Line line, ScaleCount cou
     mie[i] = air.y;
     ozone[i] = ozone_from_tangent(atmosphere, line, point.altitude_km, point.s_km);
   }
-  Stretch after = before;
+  MarchState after = before;
   vec2 passed = vec2(0.0, 0.0);
   float passed_width = 0.0;
   for (int i = 0; i < 4; i++) {
@@ -99,16 +99,16 @@ vec3 columns_to_count(Atmosphere atmosphere, AirRay ray, Line line, ScaleCount c
   return columns_between(atmosphere, line, s_start, ray.altitude_km, max(point.s_km, s_start), point.altitude_km, 3);
 }
 
-// [glimpse]
-// Estimated contribution to the radiance per count around x; column_to_eye is updated past the cell.
-struct Glimpse {
-  vec3 contribution;
-  vec3 tau;
-  vec3 column;
+// [source_estimate]
+// Estimate of what a cell of width dx around the count x adds to the radiance. column: from the eye to the cell.
+struct SourceEstimate {
+  vec3 radiance;      // per count
+  vec3 optical_depth; // from the eye by way of the cell's middle to the sun
+  vec3 column;        // from the eye to the cell's end
 };
 
-Glimpse glimpse(Atmosphere atmosphere, AirRay ray, Line line, ScaleCount count, ScatteringTowardsEye scattering, vec3 column,
-                float x, float dx) {
+SourceEstimate source_estimate(Atmosphere atmosphere, AirRay ray, Line line, ScaleCount count, ScatteringTowardsEye scattering,
+                               vec3 column, float x, float dx) {
   float radius_km = atmosphere.ground_radius_km;
   CountedPoint point = point_at_count(count, ray, line, x);
   vec3 density = densities(atmosphere, point.altitude_km) * point.dt_dx;
@@ -118,14 +118,14 @@ Glimpse glimpse(Atmosphere atmosphere, AirRay ray, Line line, ScaleCount count, 
   vec3 sun = vec3(0.0, 0.0, 0.0);
   if (HAS_RAYLEIGH) sun.x = exponential_column_estimate(light, point.altitude_km, mu_sun, atmosphere.rayleigh_scale_height_km);
   if (HAS_MIE) sun.y = exponential_column_estimate(light, point.altitude_km, mu_sun, atmosphere.mie_scale_height_km);
-  Glimpse result;
+  SourceEstimate result;
   vec3 tau = extinction(atmosphere, column + density * (0.5 * dx) + max(sun, vec3(0.0, 0.0, 0.0)));
-  result.tau = tau;
-  result.contribution = (scattering.rayleigh * density.x + scattering.mie * density.y) * exp(-tau);
+  result.optical_depth = tau;
+  result.radiance = (scattering.rayleigh * density.x + scattering.mie * density.y) * exp(-tau);
   result.column = column + density * dx;
   return result;
 }
-// [/glimpse]
+// [/source_estimate]
 
 const int kMaxCells = 32;          // cells of the estimate that places the panels: two per panel, at least eight
 const float kUnseen = 1.0e-4;      // light below this share of the peak, in every channel, is left out at the ends
@@ -139,134 +139,151 @@ float cell_weight(vec3 share, float slope, float width) {
   return (kLeastWeight + bent.x + bent.y + bent.z) * width;
 }
 
-// A lit piece of the ray: cells of equal count that an estimate looks at, and the panels it is given.
-struct Piece {
+// A lit interval of the ray: cells of equal count that an estimate looks at.
+struct LitInterval {
   float begin;      // count at its first end
   float width;      // counts per cell
-  int first_cell;   // into the arrays of cells
-  int last_cell;    // inclusive; smaller than first_cell: no piece
+  int first_cell;   // into the array of cells
+  int last_cell;    // inclusive; smaller than first_cell: no interval
   int first_seen;   // the cells that hold visible light
   int last_seen;
   float weight;     // sum over those cells
 };
 
-Piece piece_between(float begin, float end, int first_cell, int cells) {
-  Piece piece;
+LitInterval lit_between(float begin, float end, int first_cell, int cells) {
+  LitInterval lit;
   int used = end > begin ? cells : 0;
-  piece.begin = begin;
-  piece.width = (end - begin) / float(max(used, 1));
-  piece.first_cell = first_cell;
-  piece.last_cell = first_cell + used - 1;
-  piece.first_seen = first_cell + used;
-  piece.last_seen = first_cell - 1;
-  piece.weight = 0.0;
-  return piece;
+  lit.begin = begin;
+  lit.width = (end - begin) / float(max(used, 1));
+  lit.first_cell = first_cell;
+  lit.last_cell = first_cell + used - 1;
+  lit.first_seen = first_cell + used;
+  lit.last_seen = first_cell - 1;
+  lit.weight = 0.0;
+  return lit;
 }
 
-// [adapted_march]
-// The march of the adapted rule.
-// 1. The shadow cuts the ray into at most two lit pieces; the rest only absorbs.
-// 2. A closed-form estimate looks at a few cells of each piece. Cells at the ends that hold less than 1e-4 of the peak
-//    in every channel are left out.
-// 3. Panels share the rest by weight: evenly in scale heights where there is light, denser where its optical depth
-//    changes fast, thinner where it is below a few thousandths of the peak.
-// 4. Four Gauss nodes integrate each panel; what lies before a piece enters by its columns alone.
-// The whole ray's transmittance is a quadrature of its own, done only if wanted (1 otherwise).
-RayLight adapted_march(Atmosphere atmosphere, AirRay ray, ScatteringTowardsEye scattering, int view_steps, bool want_transmittance) {
+// [lit_cells]
+// The ray by counts, and what of it the sun reaches: before the planet's shadow, and behind it.
+struct LitCells {
+  ScaleCount count;
+  float x_begin;
+  float x_end;
+  LitInterval lit[2];
+  float weight[kMaxCells];  // nodes that each cell asks for
+};
+
+// The shadow cuts the ray into at most two lit intervals; the rest only absorbs.
+LitCells lit_cells(Atmosphere atmosphere, AirRay ray, Line line, int cells) {
   float radius_km = atmosphere.ground_radius_km;
-  Line line = line_through(radius_km, ray.altitude_km, ray.mu, ray.sine);
-  ScaleCount count = scale_count(atmosphere, line);
-  float x_begin = count_along(count, line, ray, 0.0);
-  float x_end = max(count_along(count, line, ray, ray.length_km), x_begin);
-  if (x_end - x_begin < 0.05) {
-    count.straight = true;
-    x_begin = 0.0;
-    x_end = ray.length_km;
+  LitCells along;
+  along.count = scale_count(atmosphere, line);
+  along.x_begin = count_along(along.count, line, ray, 0.0);
+  along.x_end = max(count_along(along.count, line, ray, ray.length_km), along.x_begin);
+  if (along.x_end - along.x_begin < 0.05) {
+    along.count.straight = true;
+    along.x_begin = 0.0;
+    along.x_end = ray.length_km;
   }
   vec2 shadow = shadow_interval(ray, radius_km);
   bool has_shadow = shadow.y > shadow.x;
-  float x_enter = has_shadow ? clamp(count_along(count, line, ray, shadow.x), x_begin, x_end) : x_end;
-  float x_leave = has_shadow ? clamp(count_along(count, line, ray, shadow.y), x_enter, x_end) : x_end;
+  float x_enter = has_shadow ? clamp(count_along(along.count, line, ray, shadow.x), along.x_begin, along.x_end) : along.x_end;
+  float x_leave = has_shadow ? clamp(count_along(along.count, line, ray, shadow.y), x_enter, along.x_end) : along.x_end;
+  bool both = x_enter > along.x_begin && along.x_end > x_leave;
+  along.lit[0] = lit_between(along.x_begin, x_enter, 0, both ? cells / 2 : cells);
+  along.lit[1] = lit_between(x_leave, along.x_end, along.lit[0].last_cell + 1, both ? cells / 2 : cells);
+  return along;
+}
 
-  bool both = x_enter > x_begin && x_end > x_leave;
-  int panels = max((view_steps + 3) / 4, 1);
-  int cells = clamp(2 * panels, 8, kMaxCells);
-  Piece piece[2];
-  piece[0] = piece_between(x_begin, x_enter, 0, both ? cells / 2 : cells);
-  piece[1] = piece_between(x_leave, x_end, piece[0].last_cell + 1, both ? cells / 2 : cells);
-
+// An estimate in closed form looks at each cell. Cells at the ends of an interval that hold less than `unseen` of the peak in
+// every channel are left out; the others ask for nodes: evenly in scale heights where there is light, more of them where its
+// optical depth changes fast, fewer where it is below a few thousandths of the peak.
+LitCells weighted_cells(Atmosphere atmosphere, AirRay ray, Line line, ScatteringTowardsEye scattering, LitCells along, float unseen) {
   vec4 seen[kMaxCells];  // xyz: light per count; w: change of the largest optical depth per count
   vec3 peak = vec3(1.0e-37, 1.0e-37, 1.0e-37);
   vec3 column = vec3(0.0, 0.0, 0.0);
   for (int k = 0; k < 2; k++) {
-    if (piece[k].last_cell >= piece[k].first_cell && piece[k].begin > x_begin) {
-      column = columns_to_count(atmosphere, ray, line, count, piece[k].begin);
-    }
+    LitInterval lit = along.lit[k];
+    if (lit.last_cell >= lit.first_cell && lit.begin > along.x_begin) column = columns_to_count(atmosphere, ray, line, along.count, lit.begin);
     float tau_before = 0.0;
-    for (int j = piece[k].first_cell; j <= piece[k].last_cell; j++) {
-      float x = piece[k].begin + piece[k].width * (float(j - piece[k].first_cell) + 0.5);
-      Glimpse look = glimpse(atmosphere, ray, line, count, scattering, column, x, piece[k].width);
-      column = look.column;
-      float tau = max(max(look.tau.x, look.tau.y), look.tau.z);
-      float slope = abs(tau - (j == piece[k].first_cell ? tau : tau_before)) / piece[k].width;
-      seen[j] = vec4(look.contribution, slope);
-      if (j == piece[k].first_cell + 1) seen[j - 1].w = slope;
+    for (int j = lit.first_cell; j <= lit.last_cell; j++) {
+      float x = lit.begin + lit.width * (float(j - lit.first_cell) + 0.5);
+      SourceEstimate cell = source_estimate(atmosphere, ray, line, along.count, scattering, column, x, lit.width);
+      column = cell.column;
+      float tau = max(max(cell.optical_depth.x, cell.optical_depth.y), cell.optical_depth.z);
+      float slope = abs(tau - (j == lit.first_cell ? tau : tau_before)) / lit.width;
+      seen[j] = vec4(cell.radiance, slope);
+      if (j == lit.first_cell + 1) seen[j - 1].w = slope;
       tau_before = tau;
-      peak = max(peak, look.contribution);
+      peak = max(peak, cell.radiance);
     }
   }
-  // With more panels the ends matter sooner: what is left out must shrink with the error.
-  float unseen = kUnseen * min(1.0, 512.0 / float(panels * panels * panels));
-  float weight[kMaxCells];
   for (int k = 0; k < 2; k++) {
-    for (int j = piece[k].first_cell; j <= piece[k].last_cell; j++) {
+    for (int j = along.lit[k].first_cell; j <= along.lit[k].last_cell; j++) {
       vec3 share = vec3(seen[j]) / peak;
       if (max(max(share.x, share.y), share.z) >= unseen) {
-        piece[k].first_seen = min(piece[k].first_seen, j);
-        piece[k].last_seen = j;
+        along.lit[k].first_seen = min(along.lit[k].first_seen, j);
+        along.lit[k].last_seen = j;
       }
-      weight[j] = cell_weight(share, seen[j].w, piece[k].width);
+      along.weight[j] = cell_weight(share, seen[j].w, along.lit[k].width);
     }
-    for (int j = piece[k].first_seen; j <= piece[k].last_seen; j++) piece[k].weight += weight[j];
+    for (int j = along.lit[k].first_seen; j <= along.lit[k].last_seen; j++) along.lit[k].weight += along.weight[j];
   }
+  return along;
+}
+// [/lit_cells]
 
-  float ozone_begin = ozone_from_tangent(atmosphere, line, ray.altitude_km, (radius_km + ray.altitude_km) * ray.mu);
+// [adapted_march]
+// The march of the adapted rule: panels share the lit cells by the nodes these ask for, four Gauss nodes integrate each
+// panel, and what lies before an interval enters by its columns alone.
+// The whole ray's transmittance is a quadrature of its own, done only if wanted (1 otherwise).
+RayLight adapted_march(Atmosphere atmosphere, AirRay ray, ScatteringTowardsEye scattering, int view_steps, bool want_transmittance) {
+  Line line = line_through(atmosphere.ground_radius_km, ray.altitude_km, ray.mu, ray.sine);
+  int panels = max((view_steps + 3) / 4, 1);
+  LitCells along = lit_cells(atmosphere, ray, line, clamp(2 * panels, 8, kMaxCells));
+  // With more panels the ends matter sooner: what is left out must shrink with the error.
+  along = weighted_cells(atmosphere, ray, line, scattering, along, kUnseen * min(1.0, 512.0 / float(panels * panels * panels)));
+
+  float ozone_begin = ozone_from_tangent(atmosphere, line, ray.altitude_km, (atmosphere.ground_radius_km + ray.altitude_km) * ray.mu);
   RayLight result;
   result.radiance = vec3(0.0, 0.0, 0.0);
   int panels_left = panels;
   for (int k = 0; k < 2; k++) {
-    if (piece[k].last_seen < piece[k].first_seen) continue;
-    int piece_panels = panels_left;
-    if (k == 0 && piece[1].weight > 0.0) {
-      float share = piece[0].weight / (piece[0].weight + piece[1].weight);
-      piece_panels = clamp(int(float(panels) * share + 0.5), 1, max(panels - 1, 1));
+    LitInterval lit = along.lit[k];
+    if (lit.last_seen < lit.first_seen) continue;
+    // The interval's part of the panels.
+    int lit_panels = panels_left;
+    if (k == 0 && along.lit[1].weight > 0.0) {
+      float share = along.lit[0].weight / (along.lit[0].weight + along.lit[1].weight);
+      lit_panels = clamp(int(float(panels) * share + 0.5), 1, max(panels - 1, 1));
     }
-    panels_left = max(panels_left - piece_panels, 1);
-    int cell = piece[k].first_seen;
-    float from = piece[k].begin + piece[k].width * float(cell - piece[k].first_cell);
-    Stretch march;
+    panels_left = max(panels_left - lit_panels, 1);
+    int cell = lit.first_seen;
+    float from = lit.begin + lit.width * float(cell - lit.first_cell);
+    MarchState march;
     march.radiance = result.radiance;
-    march.column = from > x_begin ? columns_to_count(atmosphere, ray, line, count, from) : vec3(0.0, 0.0, 0.0);
+    march.column = from > along.x_begin ? columns_to_count(atmosphere, ray, line, along.count, from) : vec3(0.0, 0.0, 0.0);
     march.column.z = ozone_begin;
-    float passed = 0.0;
-    for (int n = 1; n <= piece_panels; n++) {
-      float wanted = piece[k].weight * float(n) / float(piece_panels);
-      while (cell < piece[k].last_seen && passed + weight[cell] < wanted) {
-        passed += weight[cell];
+    float passed = 0.0;  // nodes asked for by the cells before this one
+    for (int n = 1; n <= lit_panels; n++) {
+      // Panel n ends inside the cell where n panels' share of the nodes is reached.
+      float wanted = lit.weight * float(n) / float(lit_panels);
+      while (cell < lit.last_seen && passed + along.weight[cell] < wanted) {
+        passed += along.weight[cell];
         cell++;
       }
-      bool last = n == piece_panels;
-      if (last) cell = piece[k].last_seen;
-      float into = last ? 1.0 : clamp((wanted - passed) / weight[cell], 0.0, 1.0);
-      float to = piece[k].begin + piece[k].width * (float(cell - piece[k].first_cell) + into);
-      march = march_panel(atmosphere, ray, line, count, scattering, march, from, min(to, x_end));
+      bool last = n == lit_panels;
+      if (last) cell = lit.last_seen;
+      float into = last ? 1.0 : clamp((wanted - passed) / along.weight[cell], 0.0, 1.0);
+      float to = lit.begin + lit.width * (float(cell - lit.first_cell) + into);
+      march = march_panel(atmosphere, ray, line, along.count, scattering, march, from, min(to, along.x_end));
       from = to;
     }
     result.radiance = march.radiance;
   }
   result.transmittance = vec3(1.0, 1.0, 1.0);
   if (want_transmittance) {
-    result.transmittance = exp(-extinction(atmosphere, columns_to_count(atmosphere, ray, line, count, x_end)));
+    result.transmittance = exp(-extinction(atmosphere, columns_to_count(atmosphere, ray, line, along.count, along.x_end)));
   }
   return result;
 }

@@ -34,7 +34,7 @@ float chord_to(Line line, float altitude_km) {
 
 // Integral of exp(-(h - h_a)/H) ds over s in [s_a, s_b], 0 <= s_a, h_a = h(s_a); `panels` of four Gauss nodes. On the
 // map s = s_a + D z (bend + (1 - bend) z) nodes gather at s_a; bend = 1 where the line is horizontal at s_a.
-float exponential_leg(Line line, float s_a, float s_b, float scale_height_km, float bend, int panels) {
+float exponential_panels(Line line, float s_a, float s_b, float scale_height_km, float bend, int panels) {
   float span = s_b - s_a;
   float r_a = sqrt(line.b_km * line.b_km + s_a * s_a);
   float dz = 1.0 / float(panels);
@@ -117,10 +117,10 @@ float exponential_column_between(Line line, float s_a, float s_b, float scale_he
   float column = 0.0;
   if (near_s > 0.0 || s_a >= 0.0 || s_b <= 0.0) {
     float far_s = max(max(reach_a, reach_b), near_s);
-    column = exponential_leg(line, near_s, far_s, scale_height_km, 1.0 - 1.4 * near_s / (near_s + far_s), panels);
+    column = exponential_panels(line, near_s, far_s, scale_height_km, 1.0 - 1.4 * near_s / (near_s + far_s), panels);
   } else {
-    column = exponential_leg(line, 0.0, reach_a, scale_height_km, 1.0, panels) +
-             exponential_leg(line, 0.0, reach_b, scale_height_km, 1.0, panels);
+    column = exponential_panels(line, 0.0, reach_a, scale_height_km, 1.0, panels) +
+             exponential_panels(line, 0.0, reach_b, scale_height_km, 1.0, panels);
   }
   return exp(-lowest_km / scale_height_km) * column;
 }

@@ -1,4 +1,4 @@
-// The sun's disc: its radiance before the air, darker towards the limb. Pure functions; radians.
+// The sun's disc behind the air, darker towards the limb. Pure functions; radians, km.
 //
 //   L(mu_s) = E / (pi sin^2 a) * (alpha + 2)/2 * mu_s^alpha       mu_s = sqrt(1 - (sin angle / sin a)^2)
 // a is the disc's angular radius, mu_s the cosine at the sun's surface. The factor (alpha + 2)/2 makes the disc's mean
@@ -7,19 +7,38 @@
 #ifndef WELKIN_SUN_DISC_GLSL
 #define WELKIN_SUN_DISC_GLSL
 
-// Radiance per channel towards a direction at 1 - cosine `one_minus_nu` from the disc's centre; 0 outside the disc.
-// Domain: irradiance >= 0, 0 < angular_radius <= 0.2 rad.
-vec3 sun_disc_radiance(vec3 irradiance, float angular_radius, float one_minus_nu) {
-  // sin^2 as a series (next term 3e-3 a^8): Vulkan lets sin() be wrong by 5e-4 in absolute terms, and a real GPU's is off
-  // by 1e-4 of so small an angle, which shows at the limb.
-  float a2 = angular_radius * angular_radius;
-  float sine2_radius = a2 * (1.0 - a2 * (0.33333333333333333 - a2 * 0.044444444444444444));
-  float sine2 = one_minus_nu * (2.0 - one_minus_nu);  // 1 - nu^2 without cancelling
-  if (one_minus_nu > 1.0 || sine2 >= sine2_radius) return vec3(0.0, 0.0, 0.0);
-  float mu = sqrt(1.0 - sine2 / sine2_radius);
+#include "04_air/sun_in_pixel.glsl"
+#include "05_single_scattering/march.glsl"
+
+// [limb]
+// Radiance per channel of the disc before the air. Domain: irradiance >= 0, 0 < angular_radius <= 0.2, mu in 0 ... 1.
+vec3 sun_disc_radiance(vec3 irradiance, float angular_radius, float mu) {
   vec3 alpha = vec3(0.397, 0.503, 0.652);
   vec3 darkening = vec3(pow(mu, alpha.x), pow(mu, alpha.y), pow(mu, alpha.z)) * (alpha + vec3(2.0, 2.0, 2.0)) * 0.5;
-  return irradiance * darkening / (3.14159265358979324 * sine2_radius);
+  return irradiance * darkening / (3.14159265358979324 * sine_squared(angular_radius));
 }
+// [/limb]
+
+// [disc_light]
+// The disc's mean radiance over a pixel, through the air along each of its pieces and as far as it stands above the
+// horizon. view: camera_direction() of that pixel.
+vec3 sun_disc_light(Atmosphere atmosphere, CameraRays camera, ivec2 pixel, vec3 view) {
+  vec3 light = vec3(0.0, 0.0, 0.0);
+  SunInPixel disc = sun_in_pixel(camera, pixel, view, atmosphere.sun_angular_radius);
+  if (disc.side == 0) return light;
+  vec2 horizon = horizon_at(atmosphere.ground_radius_km, camera.altitude_km);
+  for (int i = 0; i < disc.side; i++) {
+    SunRow row = sun_row(disc, i);
+    for (int j = 0; j < disc.side; j++) {
+      SunNode node = sun_node(disc, row, horizon, j);
+      vec3 radiance = sun_disc_radiance(atmosphere.solar_irradiance, atmosphere.sun_angular_radius, node.mu);
+      AirRay ray = enter_air(atmosphere, camera.altitude_km, node.view, camera.sun);
+      if (ray.hits_air) radiance *= exp(optical_depth_and_to_sun(atmosphere, vec3(0.0, 0.0, 0.0), ray.altitude_km, ray.mu) * -1.0);
+      light += radiance * node.share;
+    }
+  }
+  return light;
+}
+// [/disc_light]
 
 #endif

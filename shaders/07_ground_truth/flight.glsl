@@ -32,7 +32,7 @@ float mean_exponential(float y) {
 // [/functions]
 
 // A straight piece of a path, in the frame of its first point.
-struct Course {
+struct PathSegment {
   float radius_km;    // of the ground
   float altitude_km;  // of the first point
   float mu;
@@ -50,20 +50,20 @@ struct Majorant {
 // [majorant]
 // The piece of majorant that begins at distance t. Pieces end one reach and three reaches on either side of the lowest
 // point, a reach being the distance over which the line's curvature is worth a scale height: sqrt(2 r H) / sine.
-Majorant majorant_from(Course course, float scale_height_km, float t_km) {
-  float r = course.radius_km + course.altitude_km;
-  float reach = sqrt(2.0 * r * scale_height_km) / max(course.sine, 1.0e-3);
-  bool falling = t_km < course.lowest_km;  // towards the ground
-  float low = course.lowest_km;
-  float end = falling ? low : course.length_km;
+Majorant majorant_from(PathSegment segment, float scale_height_km, float t_km) {
+  float r = segment.radius_km + segment.altitude_km;
+  float reach = sqrt(2.0 * r * scale_height_km) / max(segment.sine, 1.0e-3);
+  bool falling = t_km < segment.lowest_km;  // towards the ground
+  float low = segment.lowest_km;
+  float end = falling ? low : segment.length_km;
   if (falling && t_km < low - reach) end = low - reach;
   if (falling && t_km < low - 3.0 * reach) end = low - 3.0 * reach;
   if (!falling && low + 3.0 * reach > t_km) end = min(low + 3.0 * reach, end);
   if (!falling && low + reach > t_km) end = min(low + reach, end);
   float from_low_end = 0.45 * min(end - t_km, reach);
   float touch = falling ? end - from_low_end : t_km + from_low_end;
-  float altitude = max(altitude_along(course.radius_km, course.altitude_km, course.mu, touch), 0.0);
-  float slope = (r * course.mu + touch) / (course.radius_km + altitude);
+  float altitude = max(altitude_along(segment.radius_km, segment.altitude_km, segment.mu, touch), 0.0);
+  float slope = (r * segment.mu + touch) / (segment.radius_km + altitude);
   Majorant piece;
   piece.end_km = end;
   piece.falls_per_km = slope / scale_height_km;
@@ -73,11 +73,11 @@ Majorant majorant_from(Course course, float scale_height_km, float t_km) {
 // [/majorant]
 
 // Column of the whole majorant. At most six pieces.
-float majorant_column(Course course, float scale_height_km) {
+float majorant_column(PathSegment segment, float scale_height_km) {
   float column = 0.0;
   float t = 0.0;
-  for (int i = 0; i < 8 && t < course.length_km; i++) {
-    Majorant piece = majorant_from(course, scale_height_km, t);
+  for (int i = 0; i < 8 && t < segment.length_km; i++) {
+    Majorant piece = majorant_from(segment, scale_height_km, t);
     float x = piece.end_km - t;
     column += piece.density * x * mean_exponential(piece.falls_per_km * x);
     t = piece.end_km;
@@ -96,16 +96,16 @@ struct Flight {
 // [exponential_flight]
 // First collision with one constituent before `limit_km`. first_column: the majorant column to the first tentative
 // collision, in km, drawn by the caller; per_km: the coefficient at density 1, which scales those that follow.
-Flight exponential_flight(Course course, float scale_height_km, float per_km, float first_column, float limit_km, Random random) {
+Flight exponential_flight(PathSegment segment, float scale_height_km, float per_km, float first_column, float limit_km, Random random) {
   Flight flight;
   flight.collided = false;
   flight.finished = false;
   flight.t_km = 0.0;
-  flight.altitude_km = course.altitude_km;
+  flight.altitude_km = segment.altitude_km;
   float column = first_column;
   for (int i = 0; i < 4096; i++) {
     if (flight.t_km >= limit_km) { flight.finished = true; break; }
-    Majorant piece = majorant_from(course, scale_height_km, flight.t_km);
+    Majorant piece = majorant_from(segment, scale_height_km, flight.t_km);
     float x = piece.end_km - flight.t_km;
     float available = piece.density * x * mean_exponential(piece.falls_per_km * x);
     if (available <= column) {
@@ -119,7 +119,7 @@ Flight exponential_flight(Course course, float scale_height_km, float per_km, fl
     x = min(abs(y) < 1.0e-6 ? scaled : minus_log_one_minus(y) / piece.falls_per_km, x);
     flight.t_km += x;
     if (flight.t_km >= limit_km) { flight.finished = true; break; }
-    flight.altitude_km = max(altitude_along(course.radius_km, course.altitude_km, course.mu, flight.t_km), 0.0);
+    flight.altitude_km = max(altitude_along(segment.radius_km, segment.altitude_km, segment.mu, flight.t_km), 0.0);
     float majorant = piece.density * exp(-piece.falls_per_km * x);
     random = draw(random);
     if (random.value.x * majorant < exp(-flight.altitude_km / scale_height_km)) {
@@ -153,26 +153,26 @@ vec3 densest(Atmosphere atmosphere, float low_km, float high_km) {
   return density;
 }
 
-// Where the course leaves its shell, and where to: distance, and the next shell.
+// Where the segment leaves its shell, and where to: distance, and the next shell.
 struct ShellEnd {
   float t_km;
   int shell;
 };
-ShellEnd shell_end(Course course, float top_km, float t_km, int shell, int shells) {
+ShellEnd shell_end(PathSegment segment, float top_km, float t_km, int shell, int shells) {
   ShellEnd end;
-  if (t_km < course.lowest_km && shell > 0) {
-    float t = distance_to_shell_from_outside(course.radius_km, course.altitude_km, course.mu, course.sine, shell_bottom(top_km, shell, shells));
+  if (t_km < segment.lowest_km && shell > 0) {
+    float t = distance_to_shell_from_outside(segment.radius_km, segment.altitude_km, segment.mu, segment.sine, shell_bottom(top_km, shell, shells));
     if (t >= t_km) {
-      end.t_km = min(t, course.length_km);
+      end.t_km = min(t, segment.length_km);
       end.shell = shell - 1;
       return end;
     }
   }
-  end.t_km = course.length_km;
+  end.t_km = segment.length_km;
   end.shell = shell + 1;
-  if (shell + 1 < shells && !(course.lowest_km >= course.length_km)) {
+  if (shell + 1 < shells && !(segment.lowest_km >= segment.length_km)) {
     float high = shell_bottom(top_km, shell + 1, shells);
-    end.t_km = clamp(distance_to_shell_from_inside(course.radius_km, course.altitude_km, course.mu, high), t_km, course.length_km);
+    end.t_km = clamp(distance_to_shell_from_inside(segment.radius_km, segment.altitude_km, segment.mu, high), t_km, segment.length_km);
   }
   return end;
 }
@@ -180,19 +180,19 @@ ShellEnd shell_end(Course course, float top_km, float t_km, int shell, int shell
 
 // [shell_flight]
 // First collision with anything, ozone included, in one channel (a vector with one 1), under constant majorants.
-Flight shell_flight(Atmosphere atmosphere, Course course, vec3 channel, int shells, Random random) {
+Flight shell_flight(Atmosphere atmosphere, PathSegment segment, vec3 channel, int shells, Random random) {
   float top_km = atmosphere.top_km;
   Flight flight;
   flight.collided = false;
   flight.finished = false;
   flight.t_km = 0.0;
-  flight.altitude_km = course.altitude_km;
-  int shell = shell_at(top_km, course.altitude_km, shells);
+  flight.altitude_km = segment.altitude_km;
+  int shell = shell_at(top_km, segment.altitude_km, shells);
   random = draw(random);
   float depth = minus_log_one_minus(random.value.y);
   for (int i = 0; i < 60000; i++) {
-    if (flight.t_km >= course.length_km) { flight.finished = true; break; }
-    ShellEnd end = shell_end(course, top_km, flight.t_km, shell, shells);
+    if (flight.t_km >= segment.length_km) { flight.finished = true; break; }
+    ShellEnd end = shell_end(segment, top_km, flight.t_km, shell, shells);
     float low = shell_bottom(top_km, shell, shells);
     float majorant = dot(extinction(atmosphere, densest(atmosphere, low, shell_bottom(top_km, shell + 1, shells))), channel);
     float available = majorant * (end.t_km - flight.t_km);
@@ -200,11 +200,11 @@ Flight shell_flight(Atmosphere atmosphere, Course course, vec3 channel, int shel
       depth -= available;
       flight.t_km = end.t_km;
       shell = end.shell;
-      if (shell < 0 || shell >= shells) flight.t_km = course.length_km;
+      if (shell < 0 || shell >= shells) flight.t_km = segment.length_km;
       continue;
     }
     flight.t_km += depth / majorant;
-    flight.altitude_km = max(altitude_along(course.radius_km, course.altitude_km, course.mu, flight.t_km), 0.0);
+    flight.altitude_km = max(altitude_along(segment.radius_km, segment.altitude_km, segment.mu, flight.t_km), 0.0);
     random = draw(random);
     if (random.value.x * majorant < dot(extinction(atmosphere, densities(atmosphere, flight.altitude_km)), channel)) {
       flight.collided = true;

@@ -3,9 +3,9 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "interop/camera.h"
 #include "03_planet_and_rays/camera.glsl"
-#include "05_single_scattering/sun_disc.glsl"
 #include "07_ground_truth/accumulate.glsl"
 #include "07_ground_truth/sky_paths.glsl"
+#include "05_single_scattering/sun_disc.glsl"
 
 layout(binding = 1, std430) readonly buffer Sums {
   Accumulated sums[];
@@ -39,14 +39,7 @@ void main() {
 #else
     const bool free = true;
 #endif
-    if (SUN_DISC && free) {
-      const vec3 view = camera_direction(camera, pixel);
-      const vec3 disc = sun_disc_radiance(atmosphere.solar_irradiance, atmosphere.sun_angular_radius, one_minus_cosine(view, camera.sun));
-      if (disc.g > 0.0) {
-        const AirRay ray = enter_air(atmosphere, camera.altitude_km, view, camera.sun);
-        if (!ray.hits_ground) radiance += ray.hits_air ? disc * exp(-extinction(atmosphere, ray_columns(atmosphere, ray))) : disc;
-      }
-    }
+    if (SUN_DISC && free) radiance += sun_disc_light(atmosphere, camera, pixel, camera_direction(camera, pixel));
     imageStore(target, pixel, vec4(radiance, 1.0));
   }
   group[gl_LocalInvocationIndex] = mine;

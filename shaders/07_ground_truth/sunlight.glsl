@@ -10,34 +10,34 @@ struct Sunlight {
   Random random;
 };
 
-// The straight course from a point to where it leaves the air or meets the ground.
-Course course_from(float radius_km, float top_km, float altitude_km, float mu, float sine, bool hits_ground) {
-  Course course;
-  course.radius_km = radius_km;
-  course.altitude_km = altitude_km;
-  course.mu = mu;
-  course.sine = sine;
-  course.length_km = max(hits_ground ? distance_to_shell_from_outside(radius_km, altitude_km, mu, sine, 0.0)
+// The straight segment from a point to where it leaves the air or meets the ground.
+PathSegment segment_from(float radius_km, float top_km, float altitude_km, float mu, float sine, bool hits_ground) {
+  PathSegment segment;
+  segment.radius_km = radius_km;
+  segment.altitude_km = altitude_km;
+  segment.mu = mu;
+  segment.sine = sine;
+  segment.length_km = max(hits_ground ? distance_to_shell_from_outside(radius_km, altitude_km, mu, sine, 0.0)
                                      : distance_to_shell_from_inside(radius_km, altitude_km, mu, top_km), 0.0);
-  course.lowest_km = clamp(-(radius_km + altitude_km) * mu, 0.0, course.length_km);
-  return course;
+  segment.lowest_km = clamp(-(radius_km + altitude_km) * mu, 0.0, segment.length_km);
+  return segment;
 }
 
 // [ratio_tracking]
 // Ratio tracking (Novak, Selle, Jarosz 2014): fly through the majorant's collisions and multiply by the share of each that
 // is not real. Its mean is the transmittance, exactly; no integral is evaluated. The majorant covers all three channels.
-Sunlight ratio_tracked(Atmosphere atmosphere, Course course, int shells, Random random) {
+Sunlight ratio_tracked(Atmosphere atmosphere, PathSegment segment, int shells, Random random) {
   float top_km = atmosphere.top_km;
   Sunlight light;
   light.transmittance = vec3(1.0, 1.0, 1.0);
   light.finished = false;
   float t = 0.0;
-  int shell = shell_at(top_km, course.altitude_km, shells);
+  int shell = shell_at(top_km, segment.altitude_km, shells);
   random = draw(random);
   float depth = minus_log_one_minus(random.value.y);
   for (int i = 0; i < 60000; i++) {
-    if (t >= course.length_km) { light.finished = true; break; }
-    ShellEnd end = shell_end(course, top_km, t, shell, shells);
+    if (t >= segment.length_km) { light.finished = true; break; }
+    ShellEnd end = shell_end(segment, top_km, t, shell, shells);
     float low = shell_bottom(top_km, shell, shells);
     vec3 dense = extinction(atmosphere, densest(atmosphere, low, shell_bottom(top_km, shell + 1, shells)));
     float majorant = max(max(dense.x, dense.y), dense.z);
@@ -46,11 +46,11 @@ Sunlight ratio_tracked(Atmosphere atmosphere, Course course, int shells, Random 
       depth -= available;
       t = end.t_km;
       shell = end.shell;
-      if (shell < 0 || shell >= shells) t = course.length_km;
+      if (shell < 0 || shell >= shells) t = segment.length_km;
       continue;
     }
     t += depth / majorant;
-    float altitude = max(altitude_along(course.radius_km, course.altitude_km, course.mu, t), 0.0);
+    float altitude = max(altitude_along(segment.radius_km, segment.altitude_km, segment.mu, t), 0.0);
     vec3 real = extinction(atmosphere, densities(atmosphere, altitude)) / majorant;
     light.transmittance *= max(vec3(1.0, 1.0, 1.0) - real, vec3(0.0, 0.0, 0.0));
     random = draw(random);
@@ -61,7 +61,7 @@ Sunlight ratio_tracked(Atmosphere atmosphere, Course course, int shells, Random 
 }
 
 // The same under the exponential majorants of one constituent, whose coefficients are `per_km`.
-Sunlight exponential_ratio_tracked(Course course, float scale_height_km, vec3 per_km, Random random) {
+Sunlight exponential_ratio_tracked(PathSegment segment, float scale_height_km, vec3 per_km, Random random) {
   Sunlight light;
   light.transmittance = vec3(1.0, 1.0, 1.0);
   light.finished = false;
@@ -70,8 +70,8 @@ Sunlight exponential_ratio_tracked(Course course, float scale_height_km, vec3 pe
   random = draw(random);
   float column = minus_log_one_minus(random.value.y) / most;
   for (int i = 0; i < 20000; i++) {
-    if (t >= course.length_km) { light.finished = true; break; }
-    Majorant piece = majorant_from(course, scale_height_km, t);
+    if (t >= segment.length_km) { light.finished = true; break; }
+    Majorant piece = majorant_from(segment, scale_height_km, t);
     float x = piece.end_km - t;
     float available = piece.density * x * mean_exponential(piece.falls_per_km * x);
     if (available <= column) {
@@ -83,7 +83,7 @@ Sunlight exponential_ratio_tracked(Course course, float scale_height_km, vec3 pe
     float y = piece.falls_per_km * scaled;
     x = min(abs(y) < 1.0e-6 ? scaled : minus_log_one_minus(y) / piece.falls_per_km, x);
     t += x;
-    float altitude = max(altitude_along(course.radius_km, course.altitude_km, course.mu, t), 0.0);
+    float altitude = max(altitude_along(segment.radius_km, segment.altitude_km, segment.mu, t), 0.0);
     float share = min(exp(-altitude / scale_height_km) / (piece.density * exp(-piece.falls_per_km * x)), 1.0);
     light.transmittance *= vec3(1.0, 1.0, 1.0) - per_km * (share / most);
     random = draw(random);
@@ -95,26 +95,26 @@ Sunlight exponential_ratio_tracked(Course course, float scale_height_km, vec3 pe
 // [/ratio_tracking]
 
 // [columns]
-// Columns (rayleigh, mie, ozone) in km over the first t_km of a course, as differences of chapter 05's closed form. Their
+// Columns (rayleigh, mie, ozone) in km over the first t_km of a segment, as differences of chapter 05's closed form. Their
 // error is an absolute one, 1e-5 of a scale height's column: right for an exponent, wrong for a quotient.
-vec3 columns_along(Atmosphere atmosphere, Course course, float t_km, float altitude_km) {
-  Line line = line_through(course.radius_km, course.altitude_km, course.mu, course.sine);
-  float s_0 = (course.radius_km + course.altitude_km) * course.mu;
+vec3 columns_along(Atmosphere atmosphere, PathSegment segment, float t_km, float altitude_km) {
+  Line line = line_through(segment.radius_km, segment.altitude_km, segment.mu, segment.sine);
+  float s_0 = (segment.radius_km + segment.altitude_km) * segment.mu;
   float s_1 = s_0 + t_km;
   bool dips = s_0 < 0.0 && s_1 > 0.0;
   vec3 column = vec3(0.0, 0.0, 0.0);
   if (HAS_RAYLEIGH) {
-    float a = column_outward(line, course.altitude_km, abs(s_0), atmosphere.rayleigh_scale_height_km);
+    float a = column_outward(line, segment.altitude_km, abs(s_0), atmosphere.rayleigh_scale_height_km);
     float b = column_outward(line, altitude_km, abs(s_1), atmosphere.rayleigh_scale_height_km);
     column.x = dips ? 2.0 * column_outward(line, line.tangent_km, 0.0, atmosphere.rayleigh_scale_height_km) - a - b : abs(a - b);
   }
   if (HAS_MIE) {
-    float a = column_outward(line, course.altitude_km, abs(s_0), atmosphere.mie_scale_height_km);
+    float a = column_outward(line, segment.altitude_km, abs(s_0), atmosphere.mie_scale_height_km);
     float b = column_outward(line, altitude_km, abs(s_1), atmosphere.mie_scale_height_km);
     column.y = dips ? 2.0 * column_outward(line, line.tangent_km, 0.0, atmosphere.mie_scale_height_km) - a - b : abs(a - b);
   }
   if (HAS_OZONE) {
-    float a = ozone_column_from_tangent(atmosphere, line, course.altitude_km);
+    float a = ozone_column_from_tangent(atmosphere, line, segment.altitude_km);
     float b = ozone_column_from_tangent(atmosphere, line, altitude_km);
     column.z = dips ? a + b : abs(a - b);
   }
@@ -123,8 +123,8 @@ vec3 columns_along(Atmosphere atmosphere, Course course, float t_km, float altit
 
 // Columns of a whole ray.
 vec3 ray_columns(Atmosphere atmosphere, AirRay ray) {
-  Course course = course_from(atmosphere.ground_radius_km, atmosphere.top_km, ray.altitude_km, ray.mu, ray.sine, ray.hits_ground);
-  return columns_along(atmosphere, course, course.length_km, ray.hits_ground ? 0.0 : atmosphere.top_km);
+  PathSegment segment = segment_from(atmosphere.ground_radius_km, atmosphere.top_km, ray.altitude_km, ray.mu, ray.sine, ray.hits_ground);
+  return columns_along(atmosphere, segment, segment.length_km, ray.hits_ground ? 0.0 : atmosphere.top_km);
 }
 // [/columns]
 
@@ -139,18 +139,18 @@ Sunlight sunlight(Atmosphere atmosphere, float altitude_km, float mu_sun, int tr
     return light;
   }
   float sine = sqrt(max((1.0 - mu_sun) * (1.0 + mu_sun), 0.0));
-  Course course = course_from(atmosphere.ground_radius_km, atmosphere.top_km, altitude_km, mu_sun, sine, false);
-  if (tracking != kTrackExponential) return ratio_tracked(atmosphere, course, shells, random);
+  PathSegment segment = segment_from(atmosphere.ground_radius_km, atmosphere.top_km, altitude_km, mu_sun, sine, false);
+  if (tracking != kTrackExponential) return ratio_tracked(atmosphere, segment, shells, random);
   light.transmittance = vec3(1.0, 1.0, 1.0);
-  if (HAS_RAYLEIGH) light = exponential_ratio_tracked(course, atmosphere.rayleigh_scale_height_km, atmosphere.rayleigh_scattering, light.random);
+  if (HAS_RAYLEIGH) light = exponential_ratio_tracked(segment, atmosphere.rayleigh_scale_height_km, atmosphere.rayleigh_scattering, light.random);
   if (HAS_MIE) {
-    Sunlight mie = exponential_ratio_tracked(course, atmosphere.mie_scale_height_km, atmosphere.mie_extinction, light.random);
+    Sunlight mie = exponential_ratio_tracked(segment, atmosphere.mie_scale_height_km, atmosphere.mie_extinction, light.random);
     light.transmittance *= mie.transmittance;
     light.finished = light.finished && mie.finished;
     light.random = mie.random;
   }
   if (HAS_OZONE) {
-    Line line = line_through(course.radius_km, altitude_km, course.mu, course.sine);
+    Line line = line_through(segment.radius_km, altitude_km, segment.mu, segment.sine);
     float ozone = ozone_column_between(atmosphere, line, altitude_km, max(atmosphere.top_km, altitude_km));
     if (mu_sun < 0.0) ozone += 2.0 * ozone_column_from_tangent(atmosphere, line, altitude_km);
     light.transmittance *= exp(-atmosphere.ozone_absorption * ozone);

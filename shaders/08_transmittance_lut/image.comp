@@ -18,15 +18,8 @@ void main() {
   // A copy: loops then keep the numbers at hand instead of reading the uniform block at every sample.
   const Atmosphere air = atmosphere;
   const vec3 view = camera_direction(frame.camera, pixel);
-  const vec3 sun = frame.camera.sun;
-  const float altitude_km = frame.camera.altitude_km;
-
-  // Only the sun's disc is seen through the air and needs the transmittance: a few pixels of the picture.
-  const vec3 disc = SUN_DISC ? sun_disc_radiance(air.solar_irradiance, air.sun_angular_radius, one_minus_cosine(view, sun)) : vec3(0.0);
-  const bool on_disc = SUN_DISC && disc.g > 0.0;
-  const RayLight sky = scattered_light(air, altitude_km, view, sun, steps.x, NO_LIGHT_STEPS, RULE, on_disc);
-  vec3 radiance = sky.radiance;
-  if (on_disc && !enter_air(air, altitude_km, view, sun).hits_ground) radiance += sky.transmittance * disc;
+  vec3 radiance = scattered_light(air, frame.camera.altitude_km, view, frame.camera.sun, steps.x, NO_LIGHT_STEPS, RULE, false).radiance;
+  if (SUN_DISC) radiance += sun_disc_light(air, frame.camera, pixel, view);
   imageStore(target, pixel, vec4(radiance, 1.0));
 }
 // [/image]

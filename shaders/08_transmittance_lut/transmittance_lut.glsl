@@ -21,11 +21,12 @@ vec3 stored_optical_depth(Atmosphere atmosphere, float altitude_km, float mu) {
 // Optical depth to the top along a path that the ground does not stop: a lowest point below it is taken for rounding and
 // counts as touching. sine = sqrt(1 - mu^2).
 vec3 clear_optical_depth(Atmosphere atmosphere, float altitude_km, float mu) {
-  if (TABLE_MAPPING == kMappingPublished || mu >= 0.0) return stored_optical_depth(atmosphere, altitude_km, mu);
+  if (TABLE_MAPPING == kMappingPublished) return stored_optical_depth(atmosphere, altitude_km, mu);
+  vec3 upward = stored_optical_depth(atmosphere, altitude_km, abs(mu));
+  if (mu >= 0.0) return upward;
   float sine = sqrt(max((1.0 - mu) * (1.0 + mu), 0.0));
   float lowest_km = clamp(tangent_altitude(atmosphere.ground_radius_km, altitude_km, mu, sine), 0.0, altitude_km);
-  vec3 through = stored_optical_depth(atmosphere, lowest_km, 0.0) * 2.0;
-  return max(through - stored_optical_depth(atmosphere, altitude_km, mu * -1.0), vec3(0.0, 0.0, 0.0));
+  return max(stored_optical_depth(atmosphere, lowest_km, 0.0) * 2.0 - upward, vec3(0.0, 0.0, 0.0));
 }
 
 // Transmittance from altitude h in the air (0 ... top) to the top; 0 where the ground is in the way.

@@ -48,7 +48,7 @@ vec3 source_at(Atmosphere atmosphere, AirRay ray, CountedPoint point, vec3 air, 
 
 // [source_panel]
 // Four Gauss nodes, the columns up to each from the panel's own densities: chapter 05's panel with another source.
-Stretch source_panel(Atmosphere atmosphere, SourceRay along, vec2 chi, float ozone_begin, Stretch before, float x_a, float x_b) {
+MarchState source_panel(Atmosphere atmosphere, SourceRay along, vec2 chi, float ozone_begin, MarchState before, float x_a, float x_b) {
   float dx = x_b - x_a;
   vec4 rayleigh;
   vec4 mie;
@@ -67,7 +67,7 @@ Stretch source_panel(Atmosphere atmosphere, SourceRay along, vec2 chi, float ozo
     green[i] = source.y;
     blue[i] = source.z;
   }
-  Stretch after = before;
+  MarchState after = before;
   vec2 passed = vec2(0.0, 0.0);
   float passed_width = 0.0;
   for (int i = 0; i < 4; i++) {
@@ -130,7 +130,7 @@ vec3 source_march(Atmosphere atmosphere, SourceRay along, int steps, vec2 chi) {
 
   float ozone_begin = ozone_from_tangent(atmosphere, along.line, along.ray.altitude_km, (atmosphere.ground_radius_km + along.ray.altitude_km) * along.ray.mu);
   float from = along.x_begin + width * float(first);
-  Stretch march;
+  MarchState march;
   march.radiance = radiance;
   march.column = first > 0 ? columns_to_count(atmosphere, along.ray, along.line, along.count, from) : vec3(0.0, 0.0, 0.0);
   int cell = first;

@@ -10,8 +10,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #ifdef SUN_DISC
 #define TRANSMITTANCE_BINDING 2
 #include "08_transmittance_lut/table.glsl"
-#include "04_air/phase.glsl"
-#include "05_single_scattering/march.glsl"
+#define SUN_OPTICAL_DEPTH clear_optical_depth
 #include "05_single_scattering/sun_disc.glsl"
 #endif
 layout(constant_id = 6) const float SKY_VIEW_UNIT = 1.0;
@@ -28,17 +27,10 @@ void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, frame.camera.size))) return;
   const vec3 view = camera_direction(frame.camera, pixel);
-  const vec3 sun = frame.camera.sun;
-  const float altitude_km = frame.camera.altitude_km;
-  vec3 radiance = sky_view_radiance(atmosphere.ground_radius_km, altitude_km, view, sun);
+  vec3 radiance = sky_view_radiance(atmosphere.ground_radius_km, frame.camera.altitude_km, view, frame.camera.sun);
 #ifdef SUN_DISC
   // The disc is too small for any table: it is drawn, through the air that chapter 08's table knows.
-  const vec3 disc = sun_disc_radiance(atmosphere.solar_irradiance, atmosphere.sun_angular_radius, one_minus_cosine(view, sun));
-  if (disc.g > 0.0) {
-    const AirRay ray = enter_air(atmosphere, altitude_km, view, sun);
-    const vec3 through = ray.hits_air ? transmittance_to_top(atmosphere, ray.altitude_km, ray.mu) : vec3(1.0);
-    if (!ray.hits_ground) radiance += disc * through;
-  }
+  radiance += sun_disc_light(atmosphere, frame.camera, pixel, view);
 #endif
   imageStore(target, pixel, vec4(radiance, 1.0));
 }

@@ -2,13 +2,17 @@
 // also valid C++; lengths in km.
 //
 //   across   x = sin(phi/2)                   phi: azimuth from the sun's, 0 … pi (the sky is the same on both sides)
-//   up, down s = sqrt(tan(l/2) / tan(l_max/2))  l: angle from the horizon, upwards to the zenith or downwards to the nadir
+//   up       s = sqrt(n)                      n = tan(l/2) / tan(l_max/2), l: angle from the horizon, upwards to the zenith
+//   down     s = sqrt(n (1 + k) / (n + k))    or downwards to the nadir; k = m + sqrt(m), m = tan(dip/2)
 //
 // Half angles need no inverse trigonometry: every one of them is a quotient of numbers known from the vectors, and both
-// directions of the map are algebra. The root crowds rows at the horizon, where the sky changes fastest. Sky and ground
-// are two halves of the table, each with its own rows, and no look-up mixes them: the horizon stays a line.
+// directions of the map are algebra. The root crowds rows at the horizon, where the sky changes fastest. Downwards a ray's
+// length falls to a few tenths within a dip, 0.02 degrees for eyes half a metre up, and k crowds the rows within a few of these.
+// Sky and ground are two halves of the table, each with its own rows, and no look-up mixes them: the horizon stays a line.
 #ifndef WELKIN_SKY_VIEW_MAP_GLSL
 #define WELKIN_SKY_VIEW_MAP_GLSL
+
+#include "03_planet_and_rays/ray_sphere.glsl"
 
 // Where in the table a direction is: x and s in 0 … 1 and which half.
 struct SkyViewPlace {
@@ -18,16 +22,15 @@ struct SkyViewPlace {
 };
 
 // [horizon]
-// The geometric horizon seen from altitude h: cosine and sine of its zenith angle, -sqrt(h (2R + h)) / r and R / r.
-vec2 horizon_at(float ground_radius_km, float altitude_km) {
-  float h = max(altitude_km, 0.0);
-  float r = ground_radius_km + h;
-  return vec2(-sqrt(h * (2.0 * ground_radius_km + h)) / r, ground_radius_km / r);
-}
-
 // tan(l/2) of the zenith (above) and of the nadir (below), l from the horizon. Neither form subtracts: cosine <= 0.
 float half_angle_range(vec2 horizon, bool below) {
   return below ? horizon.y / (1.0 - horizon.x) : (1.0 - horizon.x) / horizon.y;
+}
+
+// k of the rows below the horizon. Its floor is for an eye on the ground, whose rays down have no length.
+float rows_below_knee(vec2 horizon) {
+  float m = max(-horizon.x / (1.0 + horizon.y), 1.0e-6);
+  return m + sqrt(m);
 }
 // [/horizon]
 
@@ -49,15 +52,20 @@ SkyViewPlace sky_view_place(vec2 horizon, vec3 view, vec3 sun) {
   float c = horizon.x * view.z + horizon.y * sine;
   place.below = s < 0.0;
   float t = abs(s) / max(1.0 + c, 1.0e-20);
-  place.from_horizon = sqrt(min(t / half_angle_range(horizon, place.below), 1.0));
+  float n = min(t / half_angle_range(horizon, place.below), 1.0);
+  float knee = rows_below_knee(horizon);
+  place.from_horizon = sqrt(place.below ? n * (1.0 + knee) / (n + knee) : n);
   return place;
 }
 
 // The inverse: (cosine of the zenith angle, its sine) of a row, and (cosine, sine) of the azimuth of a column.
-// The row at the horizon itself is moved off it by a thousandth of the half (2e-6 rad for a camera on the ground), so that
-// it is on its side of it in every rounding.
+// The row at the horizon itself is moved off it, so that it is on its side of it in every rounding: above by 2e-6 rad, below
+// by a hundred-thousandth of the dip or 8e-8 rad, whichever is less: a ray's length changes by 0.5 % there.
 vec2 sky_view_zenith(vec2 horizon, float from_horizon, bool below) {
-  float t = max(from_horizon * from_horizon, 1.0e-6) * half_angle_range(horizon, below);
+  float s2 = from_horizon * from_horizon;
+  float knee = rows_below_knee(horizon);
+  float range = half_angle_range(horizon, below);
+  float t = below ? max(knee * s2 / (1.0 + knee - s2) * range, min(1.0e-5 * knee * knee, 4.0e-8)) : max(s2, 1.0e-6) * range;
   float c = (1.0 - t * t) / (1.0 + t * t);
   float s = (below ? -2.0 : 2.0) * t / (1.0 + t * t);
   return vec2(clamp(horizon.x * c + horizon.y * s, -1.0, 1.0), max(horizon.y * c - horizon.x * s, 0.0));

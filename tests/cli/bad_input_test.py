@@ -1,6 +1,8 @@
 """Bad input of every kind: one clear line, the right exit code, and nothing written."""
 import os
 import pathlib
+import shutil
+import subprocess
 import unittest
 
 from welkin_case import BUILD, CHAPTERS, ROOT, WelkinCase
@@ -99,6 +101,25 @@ class Files(WelkinCase):
         self.refuse_file("bad.png", b"\x89PNG\r\n\x1a\n" + bytes(100), use, "bad.png")
         self.refuse_file("bad.png", good[:60] + bytes([good[60] ^ 255]) + good[61:], use, "bad.png")
 
+    def test_a_picture_saved_again_by_another_program_restores(self):
+        shutil.copy(ROOT / "tests" / "data" / "resaved.png", self.directory / "RESAVED.PNG")
+        (self.directory / "there").mkdir()
+        (self.directory / "link.png").symlink_to("there/picture.png")
+        done = self.run_chapter(SKY, "--headless", "--size", "16x9", "--scene", "RESAVED.PNG", "--output", "link.png")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("scene sunset", done.stdout)
+        self.assertTrue((self.directory / "link.png").is_symlink())
+        self.assertEqual(self.files(), ["RESAVED.PNG", "link.png", "there/picture.png"])
+
+    def test_rays_of_a_spreadsheet(self):
+        """A byte order mark and CR LF change nothing."""
+        plain = (RAYS + "0.0005,60,85,0\n").encode()
+        for name, content in (("plain", plain), ("marked", b"\xef\xbb\xbf" + plain.replace(b"\n", b"\r\n"))):
+            (self.directory / f"{name}.csv").write_bytes(content)
+            done = self.run_chapter(SKY, "--headless", "--probe", f"{name}.csv", "--probe-out", f"{name}_out.csv")
+            self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual((self.directory / "plain_out.csv").read_bytes(), (self.directory / "marked_out.csv").read_bytes())
+
     def test_reference(self):
         use = ["--against", "bad.exr", "--size", "16x9"]
         self.refuse_file("bad.exr", None, use, "bad.exr")
@@ -111,7 +132,7 @@ class Files(WelkinCase):
                 (None, ["rays.csv"]), (b"", ["rays.csv"]), (RAYS.encode(), ["rays.csv"]), (os.urandom(300), ["rays.csv"]),
                 (b"altitude_km\n1\n", ["view_zenith_deg"]), ((RAYS + "0,0,0\n").encode(), ["rays.csv:2"]),
                 ((RAYS + "0,0,zero,0\n").encode(), ["rays.csv:2:5"]), ((RAYS + "0,nan,0,0\n").encode(), ["rays.csv:2:3"]),
-                ((RAYS + "-1,0,0,0\n").encode(), ["altitude_km", "0 to"]), ((RAYS + "0,181,0,0\n").encode(), ["view_zenith_deg", "0 to 180"])):
+                ((RAYS + "-1,0,0,0\n").encode(), ["altitude_km", "0 to"]), ((RAYS + "1000001,0,0,0\n").encode(), ["altitude_km", "0 to 1e+06"]), ((RAYS + "0,181,0,0\n").encode(), ["view_zenith_deg", "0 to 180"])):
             self.refuse_file("rays.csv", content, use, *words)
 
     def test_unwritable_output(self):
@@ -155,14 +176,44 @@ class Machine(WelkinCase):
 
 
 class FrontDoor(WelkinCase):
-    def front(self, *arguments):
-        import subprocess
-        return subprocess.run([ROOT / "welkin", *arguments], cwd=self.directory, capture_output=True, text=True, timeout=60,
-                              env={**os.environ, "WELKIN_BUILD": str(BUILD)})
+    def front(self, *arguments, program=ROOT / "welkin", **environment):
+        return subprocess.run([program, *map(str, arguments)], cwd=self.directory, capture_output=True, text=True, timeout=120,
+                              env={**os.environ, "WELKIN_BUILD": str(BUILD), **environment})
 
     def test_words(self):
-        for arguments, word in ((["dance"], "dance"), (["run", "99"], "99"), (["compare"], "two chapters"), (["plot"], "table"), (["bench"], "chapter")):
+        for arguments, word in ((["dance"], "dance"), (["run", "99"], "99"), (["compare"], "two chapters"), (["plot"], "table"), (["bench"], "chapter"),
+                                (["compare", "04", "05", "--truth"], "--truth"), (["compare", "04", "05", "--truth=many"], "--truth many")):
             self.assert_refused(self.front(*arguments), word)
+
+    def test_through_links_and_with_cdpath(self):
+        wanted = self.front("list").stdout
+        self.assertIn("01  first_light", wanted)
+        (self.directory / "link").symlink_to(ROOT / "welkin")
+        (self.directory / "again").symlink_to("link")
+        (self.directory / "tree").symlink_to(ROOT)
+        for program in ("./link", "./again", "tree/welkin"):
+            for paths in ("", f"{self.directory}:/", "/"):
+                done = self.front("list", program=program, CDPATH=paths)
+                self.assertEqual((done.stdout, done.stderr), (wanted, ""), (program, paths))
+
+    def test_compare_takes_options_in_both_forms(self):
+        """In a tree of its own, whose build finds the programs of this one up to date."""
+        tree, build = self.directory / "tree", self.directory / "tree" / "build"
+        build.mkdir(parents=True)
+        for name, target in ((tree / "chapters", ROOT / "chapters"), (build / "bin", BUILD / "bin"), (build / "shaders", BUILD / "shaders")):
+            name.symlink_to(target)
+        for name in ("welkin", "packages.txt"):
+            shutil.copy(ROOT / name, tree)
+        (build / ".packages-run").touch()
+        (build / "build.ninja").write_text(f"build {' '.join(CHAPTERS)} welkin_compare: phony\n")
+        for options, name in ((["--scene=sunset", "--view=wide", "--size=32x18", "--frames=3"], "sunset_wide"), (["--scene", "sunset", "--size", "32x18", "--frames", "3"], "sunset_sun"),
+                              (["--size=32x18", "--truth=1"], "noon_horizon")):
+            done = self.front("compare", "04", "05", *options, program=tree / "welkin", WELKIN_BUILD=str(build))
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            report = tree / "out" / f"compare_04_air_05_single_scattering_{name}.md"
+            self.assertIn(str(report), done.stdout)
+            self.assertRegex(report.read_text(), "32 ?[x×] ?18")
+            self.assertEqual("truth" in report.read_text(), "--truth=1" in options)
 
     def test_overview_and_list(self):
         self.assertIn("./welkin run", self.front().stdout)

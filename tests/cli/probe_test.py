@@ -138,6 +138,12 @@ class Probe(WelkinCase):
             self.assertEqual([answer[name] for name in RADIANCE], [0.0] * 3)
             self.assertEqual([answer[name] for name in TRANSMITTANCE], [1.0] * 3)
 
+    def test_from_as_far_as_a_view_may_stand(self):
+        """A ray straight down does not know how far away it began: from 10^6 km it is that from 1000 km."""
+        near, far = self.probe([["1000", "180", "40", "0"], ["1000000", "180", "40", "0"]])
+        for name in ("radiance_r", "radiance_g", "radiance_b", "transmittance_r", "transmittance_b"):
+            self.assertAlmostEqual(far[name] / near[name], 1.0, delta=2e-4)
+
     def test_text_of_the_inputs_is_kept(self):
         self.probe([["2.000", "3e1", "+45", "-10.50"], ["0.0005", "090", "1.5E1", "360"]])  # probe() compares the texts
 

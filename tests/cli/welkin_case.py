@@ -86,3 +86,19 @@ def read_png(path):
 def rgb(picture):
     width, height, channels, rows = picture
     return [bytes(row[x * channels + c] for x in range(width) for c in range(3)) for row in rows]
+
+
+def carried(path):
+    """The scene's text in a picture."""
+    data, position = pathlib.Path(path).read_bytes(), 8
+    while position < len(data):
+        length, kind = struct.unpack(">I4s", data[position:position + 8])
+        body = data[position + 8:position + 8 + length]
+        if kind == b"iTXt" and body.startswith(b"welkin.scene\0"):
+            packed = body[len(b"welkin.scene\0")] == 1
+            text = body[len(b"welkin.scene\0") + 2:].split(b"\0", 2)[2]
+            return (zlib.decompress(text) if packed else text).decode()
+        if kind == b"tEXt" and body.startswith(b"welkin.scene\0"):
+            return body.split(b"\0", 1)[1].decode()
+        position += 12 + length
+    raise AssertionError(f"{path} carries no scene")

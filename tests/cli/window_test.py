@@ -1,12 +1,14 @@
 """A real window under Xvfb with real keys, mouse and resizes: what it shows is what a headless run writes."""
 import os
 import re
+import resource
 import shutil
+import signal
 import subprocess
 import time
 import unittest
 
-from welkin_case import BUILD, ROOT, WelkinCase, read_png, rgb
+from welkin_case import BUILD, ROOT, WelkinCase, carried, read_png, rgb
 
 TOOLS = ("Xvfb", "xdotool", "import", "convert")
 
@@ -24,13 +26,14 @@ class Window(WelkinCase):
         self.addCleanup(self.server.wait)
         self.addCleanup(self.server.kill)
         self.program = None
+        self.limits = {}  # more keywords for the program's start
 
     def open(self, chapter="02_window", *arguments, **environment):
         self.errors = open(self.directory / "stderr.txt", "w+")
         self.addCleanup(self.errors.close)
         self.program = subprocess.Popen([BUILD / "bin" / chapter, *arguments], cwd=self.directory, text=True,
                                         env={**os.environ, "DISPLAY": self.display, **environment},
-                                        stdout=subprocess.PIPE, stderr=self.errors)
+                                        stdout=subprocess.PIPE, stderr=self.errors, **self.limits)
         self.addCleanup(self.program.stdout.close)
         self.addCleanup(self.program.wait)
         self.addCleanup(self.program.kill)
@@ -123,6 +126,59 @@ class Window(WelkinCase):
         worst = max(abs(a - b) for x, y in zip(again, wanted) for a, b in zip(x, y))
         self.assertLessEqual(worst, 1)
 
+    def assert_restored(self, saved, *arguments):
+        """Drawn headless from the picture that was saved, it is the same to one level: its numbers went through text."""
+        wanted = read_png(saved)
+        self.run_chapter("05", "--headless", "--size", f"{wanted[0]}x{wanted[1]}", "--scene", saved, "--output", "again.png", *arguments)
+        pairs = zip(rgb(read_png(self.directory / "again.png")), rgb(wanted))
+        self.assertLessEqual(max(abs(a - b) for x, y in pairs for a, b in zip(x, y)), 1)
+
+    def test_flying_far_is_restored_with_the_sun_there(self):
+        scene = self.directory / "high.toml"
+        text = (ROOT / "chapters" / "scenes" / "orbit.toml").read_text()
+        scene.write_text(text.replace("zenith_deg = 100.0", "zenith_deg = 70.0"))
+        self.open("05_single_scattering", "--size", "160x90", "--scene", scene, "--view", "geostationary", "--set", "view.steps=8")
+        self.key("f")
+        self.xdotool("keydown", "--window", self.window, "d")
+        time.sleep(2.0)
+        self.xdotool("keyup", "--window", self.window, "d")
+        time.sleep(0.5)
+        saved = self.saved()
+        self.quit()
+        place = {key: float(value) for key, value in re.findall(r"^(east_km|north_km) = (\S+)$", carried(saved).split("[[view]]")[1], re.M)}
+        self.assertGreater(abs(place["east_km"]) + abs(place["north_km"]), 500.0, "it flew")
+        self.assert_restored(saved)
+
+    def test_the_slider_of_the_time_is_saved(self):
+        """The moment that is shown is the one that is restored: not that of --time, nor that of the scene."""
+        self.open("05_single_scattering", "--size", "480x640", "--scene", "sunset", "--set", "view.steps=4", "--time", "600")
+        for y in range(430, 20, -12):  # wherever the panel has it
+            self.xdotool("mousemove", "--window", self.window, "110", str(y), "sleep", "0.2", "mousedown", "1", "sleep", "0.2",
+                         "mousemove", "--window", self.window, "70", str(y), "sleep", "0.2", "mouseup", "1", "sleep", "0.2")
+            saved = self.saved()
+            moved = re.search(r"^time_s = (-\S+)$", carried(saved), re.M)
+            if moved:
+                break
+        self.quit()
+        self.assertTrue(moved, "a slider of the time was dragged")
+        self.assertLess(float(moved[1]), -3600.0)
+        self.assert_restored(saved)
+
+    def test_a_path_is_played_until_the_camera_is_taken(self):
+        scene = self.directory / "path.toml"
+        path = "[[path]]\nname = \"rise\"\nviews = [\"horizon\", \"airliner\"]\ntime_s = [0, 60]\nmoment_s = [0, 7200]\n"
+        scene.write_text((ROOT / "chapters" / "scenes" / "noon.toml").read_text() + path)
+        self.open("05_single_scattering", "--size", "160x90", "--scene", scene, "--path", "rise", "--set", "view.steps=8")
+        first, second = self.saved(), self.saved()
+        self.key("f")
+        third, fourth = self.saved(), self.saved()
+        self.quit()
+        times = [float(re.search(r"^time_s = (\S+)$", carried(saved), re.M)[1]) for saved in (first, second, third, fourth)]
+        self.assertLess(times[0], times[1])
+        self.assertLessEqual(times[1], times[2])
+        self.assertEqual(times[2], times[3])
+        self.assert_restored(second)
+
     def test_a_broken_shader_leaves_the_old_one_running(self):
         source = self.directory / "source"
         shutil.copytree(ROOT / "shaders", source / "shaders")
@@ -143,6 +199,99 @@ class Window(WelkinCase):
         time.sleep(4)
         inverted = rgb(self.screen("three.png"))
         self.assertEqual(inverted, [bytes(255 - value for value in row) for row in wanted], "the new one is in use")
+        self.quit()
+
+    def in_time(self, happened):
+        """Whether something happens within the time that a busy machine may take for it."""
+        return any(happened() or time.sleep(0.5) for _ in range(60))
+
+    def refused(self, name, *words):
+        """Presses a key that cannot do its work: a line on standard error and in the panel, and the view as it was."""
+        before, already = rgb(self.screen("before.png")), len(self.error_text().splitlines())
+        self.key(name)
+        self.in_time(lambda: len(self.error_text().splitlines()) > already or self.program.poll() is not None)
+        time.sleep(1.0)
+        lines = self.error_text().splitlines()[already:]
+        self.assertIsNone(self.program.poll(), self.error_text())
+        self.assertEqual(len(lines), 1, lines)
+        for word in words:
+            self.assertIn(word, lines[0])
+        self.assertTrue(rgb(self.screen("told.png")) != before, "the panel says it")
+        self.assert_view_stays()
+
+    def assert_view_stays(self):
+        self.key("h")
+        self.assertTrue(self.in_time(lambda: rgb(self.screen("hidden.png")) == self.view), "the view stays")
+        self.key("h")
+
+    def open_and_look(self, *arguments, **environment):
+        self.open(*arguments, **environment)
+        self.key("h")
+        self.view = rgb(self.screen("view.png"))
+        self.key("h")
+
+    def test_a_picture_that_cannot_be_written_is_told(self):
+        self.open_and_look("02_window", "--size", "320x200", "--validation", "sync")
+        place = self.directory / "out"
+        place.write_text("a file where the directory should be")
+        self.refused("p", "cannot save a picture", "'out'")
+        place.unlink()
+        place.symlink_to("/proc")  # where not even root may write
+        self.refused("p", "cannot write 'out/02_window_001.png'")
+        place.unlink()
+        self.assertTrue(self.saved().exists())
+        self.quit()
+
+    def test_a_full_disk_is_told(self):
+        def full():  # as far as a process can make it so for itself: no file grows beyond 300 bytes
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (300, resource.RLIM_INFINITY))
+        self.limits = {"preexec_fn": full, "restore_signals": False}
+        self.open_and_look("02_window", "--size", "320x200", MESA_SHADER_CACHE_DISABLE="true")
+        self.refused("p", "cannot write 'out/02_window_001.png'", "File too large")
+        self.assertEqual(list((self.directory / "out").iterdir()), [])
+        self.quit()
+
+    def test_shaders_and_truths_that_cannot_be_made_are_told(self):
+        compiled = self.directory / "compiled"
+        shutil.copytree(BUILD / "shaders", compiled)
+        self.open_and_look("09_multiple_scattering_lut", "--size", "160x90", "--scene", "noon", WELKIN_SHADERS=str(compiled))
+        shutil.rmtree(compiled / "07_ground_truth")
+        self.refused("t", "07_ground_truth", "cannot be read")
+        shutil.rmtree(compiled)  # nowhere to write to
+        self.key("r")
+        time.sleep(3)
+        self.assertIsNone(self.program.poll(), self.error_text())
+        self.assert_view_stays()
+        self.quit()
+
+    def test_panel_chooses_scenes_and_becomes_narrow(self):
+        """Places are those of the panel's rows, 20 pixels apart, in a window of this size."""
+        self.open("05_single_scattering", "--size", "400x300", "--scene", "noon", "--set", "view.steps=4", "--set", "light.steps=1",
+                  "--validation", "sync")
+        time.sleep(1.0)
+        def press(x, y, to=None):
+            self.xdotool("mousemove", "--window", self.window, str(x), str(y))
+            time.sleep(0.5)
+            self.xdotool("mousedown", "1")
+            time.sleep(0.5)
+            if to:
+                self.xdotool("mousemove", "--window", self.window, *map(str, to))
+                time.sleep(0.5)
+            self.xdotool("mouseup", "1")
+            time.sleep(0.5)
+        press(200, 96)   # the list of scenes
+        press(160, 181)  # its fifth, in the order of the alphabet
+        picture = self.saved()
+        done = self.run_chapter("05", "--headless", "--size", "64x36", "--scene", picture)
+        self.assertIn("scene sunset", done.stdout)
+        press(257, 17, (150, 17))  # its right edge, in the title: no tooltip there
+        time.sleep(2.0)
+        narrow = rgb(self.screen("narrow.png"))
+        self.key("h")
+        right, left = [row[3 * 160:] for row in narrow], [row[:3 * 140] for row in narrow]
+        self.assertTrue(self.in_time(lambda: [row[:3 * 140] for row in rgb(self.screen("free.png"))] != left), "there was the panel")
+        self.assertTrue([row[3 * 160:] for row in rgb(self.screen("free.png"))] == right, "right of it is the view")
         self.quit()
 
     def test_times_are_those_of_the_passes(self):

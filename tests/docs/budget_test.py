@@ -56,7 +56,57 @@ class Budgets(unittest.TestCase):
         self.assertEqual(found, [])
 
 
+def functions(path):
+    """(name, lines from signature to closing brace) of every function of a C++ or GLSL file, counted by braces: what has
+    parentheses before its brace and stands in no other function is one."""
+    literals = r'//[^\n]*|/\*.*?\*/|R"\(.*?\)"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'|^[ \t]*#(?:\\\n|[^\n])*'
+    text = re.sub(literals, lambda match: "\n" * match.group().count("\n"), path.read_text(), flags=re.DOTALL | re.MULTILINE)
+    found, head, begin, line, inside = [], "", 1, 1, 0  # inside: open braces of the function at hand
+    for c in text:
+        line += c == "\n"
+        if inside:
+            inside += (c == "{") - (c == "}")
+            if inside == 0:
+                name = re.findall(r"([\w:~]+)\s*\(", head)
+                found.append((name[0] if name else "?", line - begin + 1))
+                head = ""
+        elif c == "{" and "(" in head and not re.search(r"=\s*$", head):
+            inside = 1
+        elif c in "{};":
+            head = ""
+        else:
+            if not head.strip():
+                begin = line
+            head += c
+    return found
+
+
 class Style(unittest.TestCase):
+    SOURCES = [path for path in CODE if path.relative_to(ROOT).parts[0] in ("chapters", "common", "shaders", "tests")
+               and path.suffix in {".cpp", ".hpp", ".h", ".glsl", ".comp", ".vert", ".frag"}]
+
+    def test_cpp_is_formatted(self):
+        import shutil
+        import subprocess
+        if shutil.which("clang-format") is None:
+            self.skipTest("no clang-format")
+        files = [path for path in self.SOURCES if path.suffix in {".cpp", ".hpp"}]
+        self.assertGreater(len(files), 100, "the files were found")
+        done = subprocess.run(["clang-format", "--dry-run", "--Werror", "-style=file", *files], cwd=ROOT, capture_output=True, text=True)
+        wrong = sorted({line.split(":")[0].removeprefix(f"{ROOT}/") for line in done.stderr.splitlines() if "clang-formatted" in line})
+        self.assertEqual(wrong, [], "mend them with: clang-format -i FILE")
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_no_function_over_80_lines(self):
+        lengths = {f"{path.relative_to(ROOT)}: {name}": count for path in self.SOURCES for name, count in functions(path)}
+        self.assertGreater(len(lengths), 1000, "the functions were found")
+        self.assertEqual({name: count for name, count in lengths.items() if count > 80}, {})
+
+    def test_lines_of_shaders_fit(self):
+        long = [f"{path.relative_to(ROOT)}:{i}" for path in self.SOURCES if path.suffix not in {".cpp", ".hpp"}
+                for i, line in enumerate(path.read_text().splitlines(), 1) if len(line) > 120]
+        self.assertEqual(long, [])
+
     def test_front_door_is_shellcheck_clean(self):
         import shutil
         import subprocess

@@ -4,6 +4,7 @@
 
 #include "chapters/01_first_light/first_light.hpp"
 #include "common/app/renderer.hpp"
+#include "common/gpu/resources.hpp"
 #include "tests/gpu/harness.hpp"
 
 namespace {
@@ -106,4 +107,23 @@ TEST_CASE("device choice says what was wanted and what was offered") {
   CHECK(code == Exit::usage);
   CHECK(message({lame}, "Lame", code).find("lacks synchronization2") != std::string::npos);
   CHECK(message({lame}, "1", code).find("offered: 0 Lame 3000") != std::string::npos);
+}
+
+TEST_CASE("the memory account keeps apart what has one name") {
+  const gpu::Device& device = test::device();
+  const uint64_t before = device.allocated_bytes();
+  const auto buffer = [&](VkDeviceSize bytes) {
+    return gpu::create_buffer(device, "twin", bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::device);
+  };
+  const gpu::Buffer small = buffer(64 << 10);
+  const uint64_t with_small = device.allocated_bytes();
+  {
+    gpu::Buffer large = buffer(1 << 20), moved = std::move(large);
+    CHECK(device.allocated_bytes() >= with_small + (1 << 20));
+    large = buffer(2 << 20);
+    moved = std::move(large);  // whose megabyte `large` now holds
+    CHECK(device.allocated_bytes() >= with_small + (3 << 20));
+  }
+  CHECK(device.allocated_bytes() == with_small);
+  CHECK(with_small >= before + (64 << 10));
 }

@@ -30,17 +30,24 @@ TEST_CASE("camera: a view comes back from its pose") {
   Random random(320);
   for (int i = 0; i < 10000; ++i) {
     const View view{.name = "v",
-                    .altitude_km = random.log_uniform(5e-4, 4e5),
+                    .east_km = i % 5 == 0 ? 0.0 : random.uniform(-9000.0, 9000.0),
+                    .north_km = i % 7 == 0 ? 0.0 : random.uniform(-9000.0, 9000.0),
+                    .altitude_km = random.log_uniform(5e-4, 1e6),
                     .azimuth_deg = random.uniform(0.0, 359.9),
-                    .elevation_deg = random.uniform(-89.9, 89.9),
+                    .elevation_deg = i % 3 == 0 ? (i % 2 == 0 ? 90.0 : -90.0) : random.uniform(-90.0, 90.0),
                     .fov_deg = random.uniform(1.0, 170.0)};
-    const View back = app::view_of(app::pose_of(view), kRadius);
-    REQUIRE(back.altitude_km == Approx(view.altitude_km).epsilon(1e-12).margin(1e-12));
+    const View back = app::view_of(app::pose_of(view, kRadius), kRadius);
+    REQUIRE(back.altitude_km == Approx(view.altitude_km).epsilon(1e-12).margin(1e-11));
+    REQUIRE(std::abs(back.east_km - view.east_km) < 1e-8);  // a hundredth of a millimetre, from anywhere
+    REQUIRE(std::abs(back.north_km - view.north_km) < 1e-8);
     REQUIRE(back.azimuth_deg == view.azimuth_deg);
     REQUIRE(back.elevation_deg == view.elevation_deg);
     REQUIRE(back.fov_deg == view.fov_deg);
   }
-  CHECK(app::pose_of({.elevation_deg = -90.0}).elevation_deg == -89.9);  // straight down would have no azimuth
+  // Along the ground: a quarter of the way round to the east the camera's up is the place's east.
+  const double quarter_km = 0.5 * 3.14159265358979323846 * kRadius;
+  const app::CameraPose east = app::pose_of({.east_km = quarter_km, .altitude_km = 2.0}, kRadius);
+  CHECK(glm::length(east.position_km - glm::dvec3(kRadius + 2.0, 0.0, -kRadius)) < 1e-9);
 }
 
 TEST_CASE("camera: altitude to a millimetre, at 0.5 m and at the Moon, anywhere around the planet") {
@@ -61,28 +68,79 @@ TEST_CASE("camera: altitude to a millimetre, at 0.5 m and at the Moon, anywhere 
 
 TEST_CASE("camera: no roll, whatever one does") {
   Random random(322);
-  app::CameraPose pose = app::pose_of({.altitude_km = 0.0005});
+  app::CameraPose pose = app::pose_of({.altitude_km = 0.0005}, 6360.0);
   const Scene scene;
   for (int i = 0; i < 20000; ++i) {
-    app::turn(pose, random.uniform(-400.0, 400.0), random.uniform(-60.0, 60.0));
+    app::turn(pose, random.uniform(-400.0, 400.0), random.uniform(-80.0, 80.0));  // often straight up or down
     app::fly(pose, {random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)}, 0.1, i % 2 == 0,
              kRadius);
-    REQUIRE(pose.elevation_deg >= -89.9);
-    REQUIRE(pose.elevation_deg <= 89.9);
+    REQUIRE(pose.elevation_deg >= -90.0);
+    REQUIRE(pose.elevation_deg <= 90.0);
     REQUIRE(pose.azimuth_deg >= 0.0);
     REQUIRE(pose.azimuth_deg < 360.0);
     const CameraRays rays = app::camera_rays(pose, scene, 0.0, {960, 540}, 1, 0);
     REQUIRE(std::abs(rays.right.z) < 1e-7f);  // the right axis stays level: that is what no roll means
-    REQUIRE(rays.up.z > 0.0f);                // and the picture is never upside down
+    REQUIRE(rays.up.z >= 0.0f);               // and the picture is never upside down
     REQUIRE(std::abs(glm::dot(glm::vec3(rays.right), glm::vec3(rays.up))) < 1e-6f);
     REQUIRE(std::abs(glm::dot(glm::vec3(rays.right), glm::vec3(rays.forward))) < 1e-6f);
     REQUIRE(std::abs(glm::length(glm::vec3(rays.sun)) - 1.0f) < 1e-6f);
   }
 }
 
+TEST_CASE("camera: straight down is straight down, and the picture's sides are where the azimuth says") {
+  const app::CameraPose down = app::pose_of({.azimuth_deg = 30.0, .elevation_deg = -90.0}, kRadius),
+                        up = app::pose_of({.azimuth_deg = 30.0, .elevation_deg = 90.0}, kRadius);
+  const Scene scene;
+  const CameraRays below = app::camera_rays(down, scene, 0.0, {100, 100}, 1, 0),
+                   above = app::camera_rays(up, scene, 0.0, {100, 100}, 1, 0);
+  CHECK(glm::vec3(below.forward).z == -1.0f);
+  CHECK(glm::vec3(above.forward).z == 1.0f);
+  CHECK(std::hypot(below.forward.x, below.forward.y) < 1e-15f);
+  for (const CameraRays& rays : {below, above}) {
+    CHECK(std::abs(rays.right.z) < 1e-7f);
+    CHECK(glm::length(glm::vec3(rays.right) / std::tan(glm::radians(30.0f)) -
+                      glm::vec3(std::cos(glm::radians(30.0)), -std::sin(glm::radians(30.0)), 0.0)) < 1e-6f);
+  }
+  // Looking down, the top of the picture is where the azimuth points; up again from there it is the same look.
+  CHECK(below.up.y > 0.0f);
+  app::CameraPose turned = down;
+  app::turn(turned, 0.0, -20.0);
+  CHECK(turned.elevation_deg == -90.0);
+  app::turn(turned, 0.0, 60.0);
+  CHECK(turned.elevation_deg == -30.0);
+  CHECK(turned.azimuth_deg == 30.0);
+}
+
+TEST_CASE("camera: flying over the frame's pole goes on, with the look where it was") {
+  const double quarter_km = 0.5 * 3.14159265358979323846 * kRadius;
+  app::CameraPose pose = app::pose_of(
+      {.east_km = 1.0, .north_km = quarter_km - 40.0, .altitude_km = 10.0, .azimuth_deg = 0.0, .elevation_deg = 0.0},
+      kRadius);
+  const auto look = [&] {
+    const app::LocalFrame frame = app::local_frame(pose, kRadius);
+    const glm::dvec3 local = app::direction_from(90.0 - pose.elevation_deg, pose.azimuth_deg);
+    return frame.east * local.x + frame.north * local.y + frame.up * local.z;
+  };
+  glm::dvec3 before = look(), start = pose.position_km;
+  for (int i = 0; i < 1000; ++i) {
+    app::fly(pose, {0.0, 1.0, 0.0}, 0.02, false, kRadius);
+    REQUIRE(glm::dot(look(), before) > std::cos(0.001));  // a step of 0.1 km turns the look with the horizon alone
+    before = look();
+  }
+  CHECK(glm::length(pose.position_km - start) > 90.0);  // it crossed, and did not turn back
+  CHECK(pose.azimuth_deg == Approx(180.0).margin(5.0));
+}
+
+TEST_CASE("camera: flying ends at the height up to which a view is accepted") {
+  app::CameraPose pose = app::pose_of({.altitude_km = 9e5}, kRadius);
+  for (int i = 0; i < 100; ++i) app::fly(pose, {1.0, 0.0, 1.0}, 1.0, true, kRadius);
+  CHECK(app::altitude_km(pose, kRadius) == Approx(kHighest_km).epsilon(1e-12));
+  CHECK(app::view_of(pose, kRadius).altitude_km <= kHighest_km);
+}
+
 TEST_CASE("camera: flying never goes below half a metre") {
   Random random(323);
-  app::CameraPose pose = app::pose_of({.altitude_km = 0.01});
+  app::CameraPose pose = app::pose_of({.altitude_km = 0.01}, 6360.0);
   double lowest_km = 1e9;
   for (int i = 0; i < 50000; ++i) {
     app::turn(pose, random.uniform(-30.0, 30.0), random.uniform(-30.0, 30.0));

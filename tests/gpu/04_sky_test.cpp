@@ -32,7 +32,7 @@ struct Drawing {
     const app::Context context{test::device(), scene, settings, inject};
     ConstantSkyProgram program(context);
     app::Renderer renderer(context, chapter, program, kSize);
-    renderer.draw(app::pose_of(scene.view(view)), 0.0, 1, 0);
+    renderer.draw(app::pose_of(scene.view(view), scene.planet.ground_radius_km), 0.0, 1, 0);
     allocations.clear();
     for (const gpu::Allocation& allocation : test::device().allocations()) allocations.push_back(allocation.name);
     return renderer.picture();
@@ -103,7 +103,7 @@ TEST_CASE("04 sky: a pixel of the drawn sphere is the sky along the pixel's ray"
     Drawing drawing(name);
     drawing.scene.sun.disc = false;
     const Image picture = drawing.draw(view);
-    const app::CameraPose pose = app::pose_of(drawing.scene.view(view));
+    const app::CameraPose pose = app::pose_of(drawing.scene.view(view), drawing.scene.planet.ground_radius_km);
     const CameraRays camera = app::camera_rays(pose, drawing.scene, 0.0, {kSize.width, kSize.height}, 1, 0);
     const double pixel_rad = 2.0 * glm::length(glm::dvec3(camera.up)) / kSize.height;
     const double right = off(picture, drawing.scene, camera, 0.0, cell + 1e-6 / pixel_rad);

@@ -8,6 +8,7 @@
 #include "chapters/05_single_scattering/single_scattering.hpp"
 #include "common/app/renderer.hpp"
 #include "common/app/session.hpp"
+#include "common/graph/composition.hpp"
 #include "common/scene/scene_knobs.hpp"
 #include "tests/gpu/harness.hpp"
 
@@ -60,7 +61,7 @@ struct World {
   std::string no_fault;
   app::Context context{test::device(), scene, settings, no_fault};
   app::Chapter chapter;
-  app::CameraPose pose = app::pose_of(scene.view("horizon"));
+  app::CameraPose pose = app::pose_of(scene.view("horizon"), scene.planet.ground_radius_km);
 };
 
 }  // namespace
@@ -68,7 +69,7 @@ struct World {
 TEST_CASE("speed: the march stays within 1.3 of the bare loop") {
   World world;
   world.scene.sun.disc = false;
-  SingleScattering march(world.context);
+  app::Composition march(world.context, {air(), single_scattering()});
   Yardstick bare(world.context);
   constexpr VkExtent2D size{640, 360};
   app::Renderer march_renderer(world.context, world.chapter, march, size),
@@ -94,7 +95,7 @@ TEST_CASE("speed: the march stays within 1.3 of the bare loop") {
 
 TEST_CASE("speed: no allocation by a frame after the first") {
   World world;
-  SingleScattering march(world.context);
+  app::Composition march(world.context, {air(), single_scattering()});
   app::Renderer renderer(world.context, world.chapter, march, {64, 36});
   renderer.draw(world.pose, 0.0, 1, 0);
   renderer.draw(world.pose, 0.0, 1, 1);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "common/scene/scene_knobs.hpp"
+
 namespace welkin::test {
 
 std::vector<Answer> evaluate_items(const std::vector<Item>& items) {
@@ -16,42 +18,65 @@ std::vector<Answer> evaluate_items(const std::vector<Item>& items) {
   return answers;
 }
 
+namespace {
+
+// A picture from a buffer, copied in every frame.
+app::Effect given(const gpu::Buffer& from) {
+  app::Effect effect{.name = "given", .chapter = 6};
+  effect.declare = [&from](app::Builder& builder, app::Board& board) {
+    const graph::Resource picture = builder.picture(board, "picture");
+    graph::Pass pass{.name = "given", .changed = [](const app::Frame&) { return true; }, .times_itself = true};
+    pass.steps.push_back(
+        {.accesses = {{picture, gpu::kTransferWrite}}, .record = [&from, picture](const graph::Recorder& r) {
+           const gpu::Image& image = r.graph.image(picture);
+           const VkBufferImageCopy region{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                                          .imageExtent = {image.size.width, image.size.height, 1}};
+           vkCmdCopyBufferToImage(r.frame.commands, from.handle, image.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
+                                  &region);
+         }});
+    builder.graph.add(std::move(pass));
+  };
+  return effect;
+}
+
+}  // namespace
+
 DisplayRig::DisplayRig(VkExtent2D size, const std::vector<std::pair<std::string, std::string>>& knobs, const Post& post)
-    : settings_(display_knobs()),
+    : settings_(joined(joined(exposure_knobs(), display_knobs()), scene_knobs(Scene{}))),
       context_{device(), scene_, settings_, inject_},
       pool_(gpu::create_command_pool(device())),
       commands_(gpu::allocate_commands(device(), pool_)),
       timer_(device()) {
   scene_.post = post;
   for (const auto& [name, text] : knobs) settings_.set(name, text);
-  const uint64_t before = device().allocated_bytes();
-  display_ = std::make_unique<AutoDisplay>(context_);
-  bytes_ = device().allocated_bytes() - before;
+  apply_scene_knobs(settings_, scene_);
   constexpr VkImageUsageFlags kUsage =
       VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
   picture_ = gpu::create_image(device(), "picture", size, VK_FORMAT_R32G32B32A32_SFLOAT, kUsage);
   displayed_ = gpu::create_image(device(), "displayed", size, VK_FORMAT_R8G8B8A8_UNORM, kUsage);
-  display_->set_images(picture_, displayed_);
+  given_ = gpu::create_buffer(device(), "given", size_t{16} * size.width * size.height,
+                              VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Where::upload);
+  display_ =
+      std::make_unique<app::Composition>(context_, std::vector<app::Effect>{given(given_), exposure(), display()});
+  const uint64_t before = device().allocated_bytes();  // the view blocks are counted already
+  display_->set_displayed(displayed_);
+  display_->set_target(picture_);
+  bytes_ = device().allocated_bytes() - before;
 }
 
 void DisplayRig::set_picture(const Image& picture) {
-  const size_t bytes = picture.pixels.size() * sizeof(glm::vec4);
-  const gpu::Buffer buffer =
-      gpu::create_buffer(device(), "upload", bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Where::upload);
-  std::memcpy(buffer.mapped, picture.pixels.data(), bytes);
-  gpu::run_once(device(), pool_, [&](VkCommandBuffer commands) {
-    gpu::image_barrier(commands, picture_.handle, {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT}, gpu::kTransferWrite);
-    const VkBufferImageCopy region{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
-                                   .imageExtent = {picture.width, picture.height, 1}};
-    vkCmdCopyBufferToImage(commands, buffer.handle, picture_.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
-    gpu::image_barrier(commands, picture_.handle, gpu::kTransferWrite, gpu::kComputeRead);
-  });
+  std::memcpy(given_.mapped, picture.pixels.data(), picture.pixels.size() * sizeof(glm::vec4));
+}
+
+bool DisplayRig::metered() {
+  if (display_->stale()) display_->rebuild();
+  return display_->find<Exposure>() != nullptr;
 }
 
 void DisplayRig::draw(uint32_t index, double seconds) {
+  metered();
   gpu::begin_commands(commands_);
   timer_.begin_frame(commands_);
-  gpu::image_barrier(commands_, displayed_.handle, {VK_PIPELINE_STAGE_2_COPY_BIT}, gpu::kComputeWrite);
   const CameraRays no_camera{};
   display_->draw({commands_, picture_, no_camera, timer_, index, 0, seconds});
   gpu::end_commands(commands_);
@@ -72,8 +97,12 @@ std::vector<T> DisplayRig::read(const gpu::Buffer& buffer) const {
   return {values.begin(), values.end()};
 }
 
-std::vector<uint32_t> DisplayRig::histogram() const { return read<uint32_t>(*display_->histogram()); }
-ExposureState DisplayRig::state() const { return read<ExposureState>(*display_->state()).front(); }
+std::vector<uint32_t> DisplayRig::histogram() const {
+  return read<uint32_t>(display_->graph().buffer(display_->find<Exposure>()->histogram));
+}
+ExposureState DisplayRig::state() const {
+  return read<ExposureState>(display_->graph().buffer(display_->find<Exposure>()->state)).front();
+}
 Image8 DisplayRig::displayed() const { return app::read_displayed(device(), pool_, displayed_); }
 
 Image flat_picture(uint32_t width, uint32_t height, glm::vec3 color) {

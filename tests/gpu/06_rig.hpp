@@ -9,8 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "chapters/06_display/auto_display.hpp"
+#include "chapters/06_display/display.hpp"
 #include "common/app/renderer.hpp"
+#include "common/graph/composition.hpp"
 #include "tests/gpu/harness.hpp"
 
 namespace welkin::test {
@@ -34,8 +35,10 @@ class DisplayRig {
   ExposureState state() const;
   Image8 displayed() const;
   std::vector<gpu::PassTime> times() { return timer_.read(); }
-  AutoDisplay& display() { return *display_; }
+  // Follows the settings, and says whether there is a meter.
+  bool metered();
   Settings& settings() { return settings_; }
+  Post& post() { return scene_.post; }
   // Bytes the display allocated beside the two pictures.
   uint64_t bytes() const { return bytes_; }
 
@@ -51,8 +54,9 @@ class DisplayRig {
   VkCommandBuffer commands_;
   gpu::Timer timer_;
   uint64_t bytes_ = 0;
-  std::unique_ptr<AutoDisplay> display_;
+  gpu::Buffer given_;  // the picture that is put in
   gpu::Image picture_, displayed_;
+  std::unique_ptr<app::Composition> display_;
 };
 
 // A picture of one colour, or of what `at` says for each pixel.

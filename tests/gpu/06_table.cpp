@@ -9,6 +9,7 @@
 
 #include "chapters/05_single_scattering/single_scattering.hpp"
 #include "common/app/session.hpp"
+#include "common/graph/composition.hpp"
 #include "common/image/atomic_file.hpp"
 #include "common/image/csv.hpp"
 #include "tests/gpu/06_rig.hpp"
@@ -27,7 +28,7 @@ constexpr Shot kViews[] = {
 constexpr VkExtent2D kSize{1920, 1080};
 using Knobs = std::vector<std::pair<std::string, std::string>>;
 
-app::Chapter chapter_06() { return {.number = 6, .sky = true, .knobs = march_knobs(), .make_display = {}}; }
+app::Chapter chapter_06() { return {.number = 6, .sky = true, .knobs = march_knobs()}; }
 
 // The linear picture of a view, drawn by chapter 05, and the scene's post section.
 std::pair<Image, Post> picture_of(const Shot& wanted, VkExtent2D size) {
@@ -35,11 +36,11 @@ std::pair<Image, Post> picture_of(const Shot& wanted, VkExtent2D size) {
   Scene scene;
   Settings settings;
   const std::string inject;
-  app::load_scene_and_settings(chapter, wanted.scene, {{"view.steps", "64"}}, scene, settings);
+  app::load_scene_and_settings(chapter, wanted.scene, {{"view.steps", "64"}}, {}, scene, settings);
   const app::Context context{device(), scene, settings, inject};
-  SingleScattering program(context);
+  app::Composition program(context, {air(), single_scattering()});
   app::Renderer renderer(context, chapter, program, size);
-  renderer.draw(app::pose_of(scene.view(wanted.view)), 0.0, 0, 0);
+  renderer.draw(app::pose_of(scene.view(wanted.view), scene.planet.ground_radius_km), 0.0, 0, 0);
   return {renderer.picture(), scene.post};
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "chapters/06_display/auto_display.hpp"
+#include "chapters/06_display/display.hpp"
 #include "chapters/08_transmittance_lut/table_sky.hpp"
 #include "common/app/renderer.hpp"
 #include "common/app/session.hpp"
@@ -28,7 +28,9 @@ const gpu::Image kNoImage;  // compile() looks at names only
 const gpu::Buffer kNoBuffer;
 
 void pass(graph::Graph& graph, const std::string& name, std::vector<graph::Access> accesses) {
-  graph.add({.name = name, .accesses = std::move(accesses), .record = [](const app::Frame&) {}});
+  graph::Pass made{.name = name};
+  made.steps.push_back({.accesses = std::move(accesses), .record = [](const graph::Recorder&) {}});
+  graph.add(std::move(made));
 }
 
 std::string message_of(graph::Graph& graph) {
@@ -54,15 +56,15 @@ std::vector<std::string> texts(const graph::Graph& graph, int frame = 0) {
 // air -> table -> picture, the passes declared in the order given.
 std::vector<std::string> order_declared(const std::string& declared) {
   graph::Graph graph;
-  const graph::Resource air = graph.add("air", kNoBuffer), table = graph.add("table", kNoImage),
-                        picture = graph.add("picture", kNoImage);
+  const graph::Resource air = graph.import("air", &kNoBuffer), table = graph.import("table", &kNoImage),
+                        picture = graph.import("picture", &kNoImage);
   for (char which : declared) {
     if (which == 'a') pass(graph, "air", {{air, gpu::kUpdate}});
     if (which == 't') pass(graph, "table", {{air, gpu::kUniformRead}, {table, gpu::kComputeWrite}});
     if (which == 'm')
       pass(graph, "march", {{table, gpu::kSampledRead}, {air, gpu::kUniformRead}, {picture, gpu::kComputeWrite}});
   }
-  graph.want(picture);
+  graph.set_output(picture);
   graph.compile();
   return graph.order();
 }
@@ -78,11 +80,12 @@ TEST_CASE("graph: the order follows from who needs what, not from who was declar
 
 TEST_CASE("graph: a pass nobody needs is left out, and so is what only it needs") {
   graph::Graph graph;
-  const graph::Resource a = graph.add("a", kNoImage), b = graph.add("b", kNoImage), c = graph.add("c", kNoImage);
+  const graph::Resource a = graph.import("a", &kNoImage), b = graph.import("b", &kNoImage),
+                        c = graph.import("c", &kNoImage);
   pass(graph, "for c", {{a, gpu::kComputeWrite}});
   pass(graph, "c", {{a, gpu::kComputeRead}, {c, gpu::kComputeWrite}});
   pass(graph, "b", {{b, gpu::kComputeWrite}});
-  graph.want(b);
+  graph.set_output(b);
   graph.compile();
   CHECK(graph.order() == std::vector<std::string>{"b"});
   CHECK(graph.explain().find("for c                left out: nobody needs what it writes") != std::string::npos);
@@ -90,48 +93,48 @@ TEST_CASE("graph: a pass nobody needs is left out, and so is what only it needs"
 
 TEST_CASE("graph: what cannot be ordered is refused, by name") {
   graph::Graph cycle;
-  const graph::Resource a = cycle.add("a", kNoImage), b = cycle.add("b", kNoImage);
+  const graph::Resource a = cycle.import("a", &kNoImage), b = cycle.import("b", &kNoImage);
   pass(cycle, "first", {{b, gpu::kComputeRead}, {a, gpu::kComputeWrite}});
   pass(cycle, "second", {{a, gpu::kComputeRead}, {b, gpu::kComputeWrite}});
-  cycle.want(a);
+  cycle.set_output(a);
   CHECK(message_of(cycle) == "frame graph: pass 'first' needs its own result");
 
   graph::Graph twice;
-  const graph::Resource image = twice.add("image", kNoImage);
+  const graph::Resource image = twice.import("image", &kNoImage);
   pass(twice, "first", {{image, gpu::kComputeWrite}});
   pass(twice, "second", {{image, gpu::kComputeWrite}});
-  twice.want(image);
+  twice.set_output(image);
   CHECK(message_of(twice) == "frame graph: 'image' is written by 'first' and by 'second'; one pass writes a resource");
 
   graph::Graph nobody;
-  const graph::Resource source = nobody.add("source", kNoImage), result = nobody.add("result", kNoImage);
+  const graph::Resource source = nobody.import("source", &kNoImage), result = nobody.import("result", &kNoImage);
   pass(nobody, "reader", {{source, gpu::kComputeRead}, {result, gpu::kComputeWrite}});
-  nobody.want(result);
+  nobody.set_output(result);
   CHECK(message_of(nobody) == "frame graph: pass 'reader' reads 'source', which no pass writes");
 
   graph::Graph in_place;
-  const graph::Resource itself = in_place.add("itself", kNoImage);
+  const graph::Resource itself = in_place.import("itself", &kNoImage);
   pass(in_place, "changer", {{itself, gpu::kComputeRead}, {itself, gpu::kComputeWrite}});
-  in_place.want(itself);
-  CHECK(
-      message_of(in_place) ==
-      "frame graph: pass 'changer' names 'itself' twice; what it changes must be another resource than what it reads");
+  in_place.set_output(itself);
+  CHECK(message_of(in_place) ==
+        "frame graph: pass 'changer' names 'itself' twice in a step; what it changes must be another resource than "
+        "what it reads");
 
   graph::Graph wanted;
-  wanted.want(wanted.add("nothing", kNoImage));
-  CHECK(message_of(wanted) == "frame graph: 'nothing' is wanted, and no pass writes it");
+  wanted.set_output(wanted.import("nothing", &kNoImage));
+  CHECK(message_of(wanted) == "frame graph: 'nothing' is an output, and no pass writes it");
 }
 
 TEST_CASE("graph: the barriers are these and no others") {
   graph::Graph graph;
-  const graph::Resource air = graph.add("air", kNoBuffer), table = graph.add("table", kNoImage),
-                        picture = graph.add("picture", kNoImage);
-  const graph::Resource shown = graph.add("shown", kNoImage);
+  const graph::Resource air = graph.import("air", &kNoBuffer), table = graph.import("table", &kNoImage),
+                        picture = graph.import("picture", &kNoImage);
+  const graph::Resource shown = graph.import("shown", &kNoImage);
   pass(graph, "air", {{air, gpu::kUpdate}});
   pass(graph, "table", {{air, gpu::kUniformRead}, {table, gpu::kComputeWrite}});
   pass(graph, "march", {{air, gpu::kUniformRead}, {table, gpu::kSampledRead}, {picture, gpu::kComputeWrite}});
   pass(graph, "show", {{table, gpu::kSampledRead}, {picture, kFragmentSampled}, {shown, gpu::kComputeWrite}});
-  graph.want(shown);
+  graph.set_output(shown);
   graph.compile();
   CHECK(texts(graph) ==
         std::vector<std::string>{
@@ -162,9 +165,9 @@ TEST_CASE("graph: who looks at a picture between frames is waited for") {
   for (const VkImageLayout layout : {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL}) {
     graph::Graph graph;
     const graph::Resource picture =
-        graph.add("picture", kNoImage, {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_NONE, layout});
+        graph.import("picture", &kNoImage, {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_NONE, layout});
     pass(graph, "march", {{picture, gpu::kComputeWrite}});
-    graph.want(picture);
+    graph.set_output(picture);
     graph.compile();
     const std::string kept = layout == VK_IMAGE_LAYOUT_UNDEFINED ? "" : ", GENERAL";
     CHECK(texts(graph, 1) == std::vector<std::string>{"march/picture: compute shader, copy" + kept +
@@ -175,14 +178,14 @@ TEST_CASE("graph: who looks at a picture between frames is waited for") {
 // A read by another stage, or in another way, of what was written once.
 TEST_CASE("graph: visibility is counted per stage and access together") {
   graph::Graph graph;
-  const graph::Resource table = graph.add("table", kNoImage);
+  const graph::Resource table = graph.import("table", &kNoImage);
   std::vector<graph::Resource> results;
-  for (int i = 0; i < 5; ++i) results.push_back(graph.add("result " + std::to_string(i), kNoBuffer));
+  for (int i = 0; i < 5; ++i) results.push_back(graph.import("result " + std::to_string(i), &kNoBuffer));
   pass(graph, "table", {{table, gpu::kComputeWrite}});
   const gpu::Use reads[] = {gpu::kSampledRead, kVertexRead, gpu::kSampledRead, gpu::kComputeRead, kVertexRead};
   for (int i = 0; i < 5; ++i)
     pass(graph, "reader " + std::to_string(i), {{table, reads[i]}, {results[i], gpu::kUpdate}});
-  for (graph::Resource result : results) graph.want(result);
+  for (graph::Resource result : results) graph.set_output(result);
   graph.compile();
   std::vector<std::string> waits;
   for (const graph::Barrier& barrier : graph.barriers())
@@ -193,11 +196,14 @@ TEST_CASE("graph: visibility is counted per stage and access together") {
 
 namespace {
 
+std::vector<app::Effect> frame_effects() {
+  return {air(), transmittance_table(), table_march(), exposure(), display()};
+}
+
 struct World {
   Scene scene = load_scene("noon", app::scenes_directory());
   Settings settings = [this] {
-    std::vector<Knob> knobs = table_sky_knobs();
-    for (Knob& knob : display_knobs()) knobs.push_back(knob);
+    std::vector<Knob> knobs = app::knobs_of(frame_effects(), 8);
     for (Knob& knob : scene_knobs(scene)) knobs.push_back(knob);
     Settings all(knobs);
     all.set("transmittance.height", "64");  // the tests ask when, not what
@@ -205,15 +211,15 @@ struct World {
   }();
   std::string no_fault;
   app::Context context{device(), scene, settings, no_fault};
-  app::Chapter chapter{.make_display = make_display};
-  app::CameraPose pose = app::pose_of(scene.view("horizon"));
+  app::Chapter chapter;
+  app::CameraPose pose = app::pose_of(scene.view("horizon"), scene.planet.ground_radius_km);
 };
 
 }  // namespace
 
 TEST_CASE("graph: the table is filled once, and again only when the air or its own knobs change") {
   World world;
-  TableSky sky(world.context);
+  app::Composition sky(world.context, frame_effects());
   app::Renderer renderer(world.context, world.chapter, sky, {64, 36});
   uint32_t index = 0;
   const auto frames = [&](int count) {
@@ -235,12 +241,10 @@ TEST_CASE("graph: the table is filled once, and again only when the air or its o
   frames(2);
   CHECK(runs() == Runs{2, 2, 10});
   world.settings.set("display.curve", "uchimura");  // pipelines are made anew, not the table
-  renderer.rebuild();
   frames(2);
   CHECK(runs() == Runs{2, 2, 12});
   const Image before = renderer.picture();
   world.settings.set("transmittance.width", "32");  // another table
-  renderer.rebuild();
   frames(2);
   CHECK(runs() == Runs{2, 3, 14});
   CHECK(sky.image("transmittance")->size.width == 32);
@@ -254,13 +258,13 @@ TEST_CASE("graph: the table is filled once, and again only when the air or its o
 
 TEST_CASE("graph: no allocation by a frame after the first") {
   World world;
-  TableSky sky(world.context);
+  app::Composition sky(world.context, frame_effects());
   app::Renderer renderer(world.context, world.chapter, sky, {64, 36});
   renderer.draw(world.pose, 0.0, 1, 0);
   renderer.draw(world.pose, 0.0, 1, 1);
   const uint64_t device_before = device().allocation_count();
   const long heap_before = heap_allocations;
-  world.scene.media[1].scattering_per_km *= 2.0;  // and so every pass runs
+  sky.graph().redo();  // every pass runs
   renderer.draw(world.pose, 0.0, 1, 2);
   const long heap_by_frame = heap_allocations - heap_before;
   CHECK(device().allocation_count() == device_before);

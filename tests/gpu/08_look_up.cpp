@@ -5,6 +5,7 @@
 
 #include "chapters/08_transmittance_lut/transmittance_lut.hpp"
 #include "common/app/session.hpp"
+#include "common/graph/composition.hpp"
 #include "common/image/csv.hpp"
 #include "common/scene/scene_knobs.hpp"
 #include "tests/gpu/harness.hpp"
@@ -18,47 +19,39 @@ std::vector<LookedUp> look_up(const std::string& scene_name, const Choices& choi
   for (const auto& [name, text] : choices) settings.set(name, text);
   const std::string no_fault;
   const app::Context context{device(), scene, settings, no_fault};
-  graph::Graph graph;
-  AirBlock air(context, graph);
-  TransmittanceLut table(context, graph, air);
-
-  constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-  const gpu::Buffer in = gpu::create_buffer(device(), "paths", paths.size() * sizeof(glm::vec4),
-                                            VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::upload);
-  const gpu::Buffer out = gpu::create_buffer(device(), "results", paths.size() * 2 * sizeof(glm::vec4),
-                                             VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::readback);
-  for (size_t i = 0; i < paths.size(); ++i) in.as<glm::vec4>()[i] = {paths[i].altitude_km, paths[i].mu, 0.0f, 0.0f};
-  const gpu::ComputePipeline pipeline = gpu::create_compute_pipeline(
-      device(), sampler == Sampler::coarse ? "tests/08_look_up_coarse.comp" : "tests/08_look_up.comp",
-      {{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
-       {1, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
-       {2, kStorage},
-       {3, kStorage}},
-      sizeof(uint32_t), table.variant());
-  const gpu::DescriptorSet set = gpu::create_descriptor_set(device(), pipeline.set_layout, pipeline.bindings);
-  gpu::write_buffer(device(), set, 0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, air.buffer());
-  gpu::write_sampled_image(device(), set, 1, table.image(), table.sampler());
-  gpu::write_buffer(device(), set, 2, kStorage, in);
-  gpu::write_buffer(device(), set, 3, kStorage, out);
-  const uint32_t count = static_cast<uint32_t>(paths.size());
-  const graph::Resource results = graph.add("results", out);
-  graph.add({.name = "look up",
-             .accesses = {{air.resource(), gpu::kUniformRead},
-                          {table.resource(), gpu::kSampledRead},
-                          {results, gpu::kComputeWrite}},
-             .record = [&](const app::Frame& frame) {
-               gpu::dispatch(frame.commands, pipeline, set, count, (count + 63) / 64);
-               gpu::buffer_barrier(frame.commands, out.handle, gpu::kComputeWrite, gpu::kHostRead);
-             }});
-  graph.want(results);
-  graph.compile();
-  execute_once(device(), graph);
+  app::Effect looking{.name = "look up", .chapter = 8};
+  const gpu::Buffer* out = nullptr;
+  graph::Resource results = 0;
+  looking.declare = [&](app::Builder& builder, app::Board& board) {
+    const AirBlock& block = *board.find<AirBlock>();
+    const TransmittanceTable& table = *board.find<TransmittanceTable>();
+    gpu::Buffer in = gpu::create_buffer(device(), "paths", paths.size() * sizeof(glm::vec4),
+                                        VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::upload);
+    for (size_t i = 0; i < paths.size(); ++i) in.as<glm::vec4>()[i] = {paths[i].altitude_km, paths[i].mu, 0.0f, 0.0f};
+    const graph::Resource asked = builder.graph.add_filled("paths", std::move(in));
+    results = builder.graph.add_buffer(
+        "results", {paths.size() * 2 * sizeof(glm::vec4), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::readback});
+    graph::Pass pass{.name = "look up"};
+    const uint32_t count = static_cast<uint32_t>(paths.size());
+    pass.steps.push_back(
+        {.shader = sampler == Sampler::coarse ? "tests/08_look_up_coarse.comp" : "tests/08_look_up.comp",
+         .constants = joined(block.constants, table.constants),
+         .bindings =
+             {{"Air", block.block}, {"transmittance_table", table.image}, {"Inputs", asked}, {"Outputs", results}},
+         .record = [count](const graph::Recorder& r) { r.push(count).dispatch((count + 63) / 64); }});
+    pass.steps.push_back({.accesses = {{results, gpu::kHostRead}}, .record = [](const graph::Recorder&) {}});
+    builder.graph.add(std::move(pass));
+    builder.graph.set_output(results);
+  };
+  app::Composition composition(context, {air(), transmittance_table(), looking});
+  composition.execute_once();
+  out = &composition.graph().buffer(results);
 
   std::vector<LookedUp> found(paths.size());
   for (size_t i = 0; i < paths.size(); ++i)
     for (int k = 0; k < 3; ++k) {
-      found[i].transmittance[k] = out.as<glm::vec4>()[2 * i][k];
-      found[i].optical_depth[k] = out.as<glm::vec4>()[2 * i + 1][k];
+      found[i].transmittance[k] = out->as<glm::vec4>()[2 * i][k];
+      found[i].optical_depth[k] = out->as<glm::vec4>()[2 * i + 1][k];
     }
   return found;
 }

@@ -160,13 +160,12 @@ TEST_CASE("truth: the sky from the table holds 1 % on every row") {
   const std::vector<TruthRow> truth =
       truth_rows(alien ? "single_scattering_alien.csv" : "single_scattering_earth.csv", planet);
   Scene world = load_scene(scene(alien), app::scenes_directory());
-  const Settings settings(table_sky_knobs());
+  const Settings settings(app::knobs_of({transmittance_table(), table_march()}, 8));
   const std::string no_fault;
-  TableSky sky({device(), world, settings, no_fault});
   std::vector<app::ProbeRay> rays;
   for (const TruthRow& row : truth)
     rays.push_back({row.ray.altitude_km, row.view_zenith_deg, row.sun_zenith_deg, row.azimuth_deg});
-  const std::vector<app::ProbeResult> lights = sky.probe(rays);
+  const std::vector<app::ProbeResult> lights = probe_table_march({device(), world, settings, no_fault}, rays);
   const std::string& phase =
       world.medium("mie")->phase == welkin::Phase::cornette_shanks ? "cornette_shanks" : "henyey_greenstein";
   Errors errors;

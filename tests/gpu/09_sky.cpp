@@ -15,7 +15,7 @@ namespace welkin::test {
 namespace {
 
 Settings settings_of(const Choices& choices) {
-  Settings settings(all_orders_knobs());
+  Settings settings(app::knobs_of({multiple_scattering_table(), all_orders_march()}, 9));
   for (const auto& [name, text] : choices) settings.set(name, text);
   return settings;
 }
@@ -61,8 +61,7 @@ std::vector<app::ProbeResult> sky_of(const Scene& scene, const Choices& choices,
                                      const std::vector<app::ProbeRay>& rays) {
   const Settings settings = settings_of(choices);
   const std::string no_fault;
-  AllOrdersSky sky({device(), scene, settings, no_fault});
-  return sky.probe(rays);
+  return probe_all_orders({device(), scene, settings, no_fault}, rays);
 }
 
 std::vector<double> sky_of_rows(const std::string& name, Phase phase, const Choices& choices,
@@ -88,13 +87,13 @@ std::vector<TableTexel> table_of(const Scene& scene, const Choices& choices) {
   settings.set("multiple_scattering.format", "float");
   const std::string no_fault;
   const app::Context context{device(), scene, settings, no_fault};
-  graph::Graph graph;
-  AirBlock air(context, graph);
-  MultipleScatteringLut table(context, graph, air);
-  graph.want(table.resource());
-  graph.compile();
-  execute_once(device(), graph);
-  const gpu::Image& image = table.image();
+  app::Effect kept{.name = "kept", .chapter = 9};
+  kept.declare = [](app::Builder& builder, app::Board& board) {
+    builder.graph.set_output(board.find<MultipleScatteringTable>()->image);
+  };
+  app::Composition composition(context, {air(), multiple_scattering_table(), kept});
+  composition.execute_once();
+  const gpu::Image& image = *composition.image("multiple_scattering");
   const gpu::Buffer back = gpu::create_buffer(device(), "texels", size_t{16} * image.size.width * image.size.height,
                                               VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Where::readback);
   const gpu::CommandPool pool = gpu::create_command_pool(device());
@@ -131,7 +130,7 @@ std::vector<Aureole> aureole(const std::string& name, const std::string& paths) 
   Settings settings(path_knobs());
   settings.set("probe.samples", paths);
   const std::string no_fault;
-  const std::vector<app::ProbeResult> truth = GroundTruth({device(), scene, settings, no_fault}).probe(rays),
+  const std::vector<app::ProbeResult> truth = probe_paths({device(), scene, settings, no_fault}, rays),
                                       got = sky_of(scene, {}, rays);
   std::vector<Aureole> all;
   for (size_t i = 0; i < rays.size(); ++i)

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "chapters/08_transmittance_lut/transmittance_lut.hpp"
 #include "chapters/10_sky_view_lut/sky.hpp"
 #include "tests/gpu/harness.hpp"
 
@@ -15,13 +16,16 @@ constexpr double kDegree = 3.14159265358979323846 / 180.0;
 
 }  // namespace
 
+std::vector<app::Effect> sky_effects() {
+  return {air(), transmittance_table(), multiple_scattering_table(), sky_view(), sky()};
+}
+
 std::vector<app::ProbeResult> view_of(const Scene& scene, const Choices& choices,
                                       const std::vector<app::ProbeRay>& rays) {
-  Settings settings(sky_knobs());
+  Settings settings(app::knobs_of(sky_effects(), 10));
   for (const auto& [name, text] : choices) settings.set(name, text);
   const std::string no_fault;
-  SkyProgram sky({device(), scene, settings, no_fault});
-  return sky.probe(rays);
+  return probe_sky({device(), scene, settings, no_fault}, rays);
 }
 
 std::vector<double> differences(const std::vector<app::ProbeRay>& rays, const std::vector<app::ProbeResult>& ours,

@@ -3,9 +3,13 @@
 
 #include <vector>
 
+#include "common/graph/composition.hpp"
 #include "tests/gpu/09_sky.hpp"
 
 namespace welkin::test {
+
+// Those that draw chapter 10's sky, without meter and display.
+std::vector<app::Effect> sky_effects();
 
 std::vector<app::ProbeResult> view_of(const Scene& scene, const Choices& choices,
                                       const std::vector<app::ProbeRay>& rays);

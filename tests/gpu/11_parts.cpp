@@ -4,10 +4,11 @@
 #include <cmath>
 #include <cstring>
 
-#include "chapters/06_display/auto_display.hpp"
+#include "chapters/06_display/display.hpp"
 #include "chapters/10_sky_view_lut/sky.hpp"
 #include "common/gpu/shader_file.hpp"
 #include "common/image/atomic_file.hpp"
+#include "tests/gpu/10_sky.hpp"
 
 namespace welkin::test {
 
@@ -69,23 +70,28 @@ Light truth_to(const reference::Planet& planet, const SkyRay& ray, double d) {
   return light;
 }
 
+std::vector<app::Effect> terrain_effects() {
+  std::vector<app::Effect> effects = sky_effects();
+  for (app::Effect& effect :
+       std::vector<app::Effect>{terrain(), terrain_shadows(), aerial_perspective(), lit_terrain()})
+    effects.push_back(std::move(effect));
+  return effects;
+}
+
 Scene scene_named(const std::string& name) { return load_scene(name, gpu::source_directory() / "chapters" / "scenes"); }
 
 Drawn::Drawn(const Scene& scene, VkExtent2D size, const std::vector<std::pair<std::string, std::string>>& knobs,
              bool chapter_10)
-    : scene_(scene), settings_(aerial_sky_knobs()), context_{device(), scene_, settings_, inject_} {
+    : scene_(scene), settings_(app::knobs_of(terrain_effects(), 11)), context_{device(), scene_, settings_, inject_} {
   for (const auto& [name, text] : knobs) settings_.set(name, text);
   const uint64_t before = device().allocated_bytes();
-  if (chapter_10)
-    program_ = std::make_unique<SkyProgram>(context_);
-  else
-    program_ = std::make_unique<AerialSky>(context_);
+  program_ = std::make_unique<app::Composition>(context_, chapter_10 ? sky_effects() : terrain_effects());
   renderer_ = std::make_unique<app::Renderer>(context_, chapter_, *program_, size);
   bytes_ = device().allocated_bytes() - before;
 }
 
 Image Drawn::picture(const View& view, uint32_t index) {
-  renderer_->draw(app::pose_of(view), 0.0, 0, index);
+  renderer_->draw(app::pose_of(view, 6360.0), 0.0, 0, index);
   passes_.clear();
   for (const gpu::PassTime& pass : renderer_->pass_times()) passes_.push_back(pass.name);
   return renderer_->picture();

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "chapters/11_aerial_perspective/aerial_sky.hpp"
+#include "chapters/11_aerial_perspective/lit_terrain.hpp"
 #include "common/app/camera.hpp"
 #include "common/app/renderer.hpp"
 #include "tests/gpu/05_rays.hpp"
@@ -34,6 +34,9 @@ std::vector<AirAnswer> evaluate_air(const reference::Planet& planet, const std::
 // Single scattering (Henyey-Greenstein, g 0.8) of the first d km of a ray, in double: that of the whole ray less that
 // of its rest, seen through the first part.
 Light truth_to(const reference::Planet& planet, const SkyRay& ray, double d_km);
+
+// Those that draw chapter 11's picture, without meter and display.
+std::vector<app::Effect> terrain_effects();
 
 // A scene drawn by a chapter's program, linear.
 class Drawn {

@@ -63,7 +63,7 @@ std::vector<Block> traced(const Scene& scene, const View& view, const std::vecto
   std::vector<glm::dvec3> squares(blocks.size(), glm::dvec3(0.0));
   for (int seed = 1; seed <= seeds; ++seed) {
     for (int i = 0; i < frames; ++i)
-      renderer.draw(app::pose_of(view), 0.0, static_cast<uint32_t>(seed), static_cast<uint32_t>(i));
+      renderer.draw(app::pose_of(view, 6360.0), 0.0, static_cast<uint32_t>(seed), static_cast<uint32_t>(i));
     const Image picture = renderer.picture();
     for (size_t b = 0; b < blocks.size(); ++b) {
       glm::dvec3 mean(0.0);

@@ -75,15 +75,15 @@ TEST_CASE("height maps that are none are refused in one line") {
   write_height_map(named("large.png"), 4097, 4097, flat);
   write_file_atomically(named("text.png"), "this is not a picture, though its name says that it is one");
   CHECK(refusal({.height_map = named("eight.png")}) ==
-        "height map " + named("eight.png") + ": 8 bits a sample, grayscale; " + accepted);
+        "height map: " + named("eight.png") + ": 8 bits a sample, grayscale; " + accepted);
   CHECK(refusal({.height_map = named("oblong.png")}) ==
-        "height map " + named("oblong.png") + ": 4 x 8 samples, not square; " + accepted);
+        "height map: " + named("oblong.png") + ": 4 x 8 samples, not square; " + accepted);
   CHECK(refusal({.height_map = named("one.png")}) ==
-        "height map " + named("one.png") + ": 1 samples a side; " + accepted);
+        "height map: " + named("one.png") + ": 1 samples a side; " + accepted);
   CHECK(refusal({.height_map = named("large.png")}) ==
-        "height map " + named("large.png") + ": 4097 samples a side; " + accepted);
+        "height map: " + named("large.png") + ": 4097 samples a side; " + accepted);
   CHECK(refusal({.height_map = named("text.png")}) ==
-        "height map " + named("text.png") + ": not a PNG file; " + accepted);
+        "height map: " + named("text.png") + ": not a PNG file; " + accepted);
   CHECK(refusal({.height_map = named("missing.png")}).find("missing.png") != std::string::npos);
   // Cut off behind a sound header.
   std::string cut = read_file(named("oblong.png"), 1 << 20);

@@ -3,6 +3,7 @@
 // fails.
 //
 //   scene_fuzz [files=20000] [seed=1]
+//   scene_fuzz --fields FILE.csv          the table of fields, which docs/scenes.md is woven from
 //
 // The same seed gives the same files everywhere: std::mt19937_64 is fixed by the standard, and no
 // distribution is used. Run from any directory. A hang ends by SIGALRM after 300 s; an ordinary run takes a
@@ -20,7 +21,8 @@
 #include <set>
 
 #include "common/error.hpp"
-#include "common/scene/scene.hpp"
+#include "common/image/atomic_file.hpp"
+#include "tests/hard/scene_fields.hpp"
 
 namespace {
 
@@ -31,6 +33,7 @@ const fs::path kScenes = fs::path(__FILE__).parent_path().parent_path().parent_p
 
 std::mt19937_64 random_bits;
 size_t below(size_t n) { return n == 0 ? 0 : static_cast<size_t>(random_bits() % n); }
+const std::vector<welkin::test::Row> rows = welkin::test::scene_rows();
 template <typename List>
 const auto& any_of(const List& list) {
   return list[below(std::size(list))];
@@ -146,6 +149,17 @@ void replace_value(std::string& text) {
   text.replace(equals + 1, end - equals - 1, any_of(kExtremes));
 }
 
+// A field of the table, said once more or in a section of its own.
+std::string piece_of_table() {
+  const welkin::test::Row& row = any_of(rows);
+  const std::string value =
+      row.number && below(2) ? fmt::format("{}", below(2) ? row.range.minimum : row.range.maximum) : any_of(kExtremes);
+  const bool many = row.section == "view" || row.section == "medium" || row.section == "path";
+  const std::string head =
+      below(2) || row.section.empty() ? "\n" : fmt::format(fmt::runtime(many ? "\n[[{}]]\n" : "\n[{}]\n"), row.section);
+  return fmt::format("{}{} = {}\n", head, row.key, value);
+}
+
 void mutate(std::string& text, const std::vector<std::string>& corpus) {
   const size_t at = below(text.size() + 1), length = below(std::min<size_t>(text.size() - at, 200) + 1);
   switch (below(16)) {
@@ -157,7 +171,7 @@ void mutate(std::string& text, const std::vector<std::string>& corpus) {
       break;
     case 2: text.erase(at, length); break;
     case 3: text.insert(at, text.substr(below(text.size() + 1), length)); break;
-    case 4: text.insert(at, any_of(kPieces)); break;
+    case 4: text.insert(at, below(2) ? any_of(kPieces) : piece_of_table()); break;
     case 5: replace_number(text); break;
     case 6: replace_value(text); break;
     case 7: text.resize(at); break;
@@ -252,14 +266,67 @@ std::string broken(const Scene& scene) {
     if (v.name.empty() || !names.insert(v.name).second) return "view name";
     if (!within(v.altitude_km, 0, 1e6) || !within(v.azimuth_deg, 0, 360) || !within(v.elevation_deg, -90, 90))
       return "view";
-    if (!within(v.fov_deg, 1, 170)) return "fov";
+    if (!within(v.fov_deg, 1, 170) || !within(v.east_km, -4e5, 4e5) || !within(v.north_km, -4e5, 4e5)) return "fov";
   }
-  if (!within(scene.post.exposure_ev, -20, 30)) return "exposure";
+  if (!within(scene.post.exposure_ev, -20, 30) || !within(scene.post.compensation_ev, -20, 20)) return "exposure";
+  if (scene.time_s != 0.0 && !scene.sun.latitude_deg) return "time without latitude";
+  for (const welkin::Path& path : scene.paths) {
+    if (path.views.size() < 2 || path.time_s.size() != path.views.size()) return "path";
+    if (!path.moment_s.empty() && path.moment_s.size() != path.views.size()) return "moments";
+    for (size_t i = 1; i < path.time_s.size(); ++i)
+      if (!(path.time_s[i] > path.time_s[i - 1])) return "path's times";
+    for (const std::string& name : path.views)
+      if (!names.contains(name)) return "path's views";
+  }
+  if (const auto& terrain = scene.terrain) {
+    if (!within(terrain->extent_km, 1, std::min(1000.0, scene.planet.ground_radius_km))) return "extent";
+    if (!within(terrain->height_km, 0, std::min(20.0, height))) return "height of terrain";
+    if (!within(terrain->size, 64, 4096) || !within(terrain->seed, 0, 1e6)) return "size";
+  }
   for (const auto& [knob, value] : scene.settings)
     if (knob.empty() || value.empty() || value.find('\n') != std::string::npos) return "settings";
   const std::string written = welkin::write_scene(scene);
-  if (welkin::write_scene(welkin::parse_scene(written, "written")) != written) return "round trip";
+  if (!(welkin::parse_scene(written, "written") == scene)) return "round trip";
   return welkin::constituents(scene).size() == 5 ? "" : "effects";
+}
+
+// Each number of the table at its limits, and just outside them, in a file that says everything: within, the file is
+// read or another value is in the way; outside, it is refused, and told what is accepted.
+bool limits_hold() {
+  Scene whole = welkin::parse_scene(welkin::read_file(kScenes / "earth.toml", 1 << 20), "earth");
+  whole.terrain = welkin::Terrain{.signs_azimuth_deg = 1.0};
+  whole.sun.latitude_deg = 1.0, whole.sun.longitude_deg = 1.0;
+  const std::string text = welkin::write_scene(whole);
+  size_t tried = 0;
+  for (const welkin::test::Row& row : rows) {
+    const std::string head = row.kind.empty() ? "" : fmt::format("kind = \"{}\"\n", row.kind);
+    const std::string section = row.section.empty() ? "version" : fmt::format("[{}]", row.section);
+    size_t start = text.find(section);
+    if (!head.empty()) start = text.find(head, start);
+    const size_t line = text.find("\n" + row.key + " = ", start);
+    const size_t next = text.find("\n[", start + section.size());
+    if (!row.number || start == text.npos || line > next) continue;
+    ++tried;
+    for (const double limit : {row.range.minimum, row.range.maximum})
+      for (const bool outside : {false, true}) {
+        const double value = outside ? std::nextafter(limit, limit == row.range.minimum ? -1e300 : 1e300) : limit;
+        std::string changed = text;
+        changed.replace(line + 1, text.find('\n', line + 1) - line - 1, fmt::format("{} = {}", row.key, value));
+        std::string message;
+        try {
+          welkin::parse_scene(changed, "f");
+        } catch (const welkin::Error& error) {
+          message = error.what();
+        }
+        const bool told = message.find(row.key + " = ") != message.npos && message.find("accepted is") != message.npos;
+        if (outside == told) continue;
+        if (!outside && message.find(row.key) == message.npos) continue;  // the value of another key is in the way
+        fmt::print("{} {} = {}: {}\n", row.section, row.key, value, message.empty() ? "accepted" : message);
+        return false;
+      }
+  }
+  fmt::print("{} of {} fields at their limits\n", tried, rows.size());
+  return tried > 30;
 }
 
 struct Counts {
@@ -290,6 +357,10 @@ bool survives(const std::string& text, Counts& counts) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc == 3 && std::string(argv[1]) == "--fields") {
+    welkin::write_file_atomically(argv[2], welkin::test::scene_fields_csv());
+    return 0;
+  }
   const size_t files = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 20000;
   const size_t seed = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1;
   random_bits.seed(seed);
@@ -301,10 +372,12 @@ int main(int argc, char** argv) {
   for (const fs::path& path : paths) {
     std::ifstream in(path, std::ios::binary);
     corpus.emplace_back(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
-    corpus.push_back(welkin::write_scene(welkin::parse_scene(corpus.back(), path.string())));
+    Scene scene = welkin::parse_scene(corpus.back(), path.string());
+    scene.paths = {{"p", {scene.views[0].name, scene.views[1].name}, {0.0, 2.5}, {0.0, 60.0}}};
+    corpus.push_back(welkin::write_scene(scene));
   }
   Counts counts;
-  bool good = files > 0 && corpus.size() >= 14;
+  bool good = files > 0 && corpus.size() >= 14 && limits_hold();
   for (size_t which = 0; which < 14; ++which) good = survives(hostile(which), counts) && good;
   for (size_t i = 0; i < files && good; ++i) {
     std::string text = any_of(corpus);

@@ -51,11 +51,28 @@ TEST_CASE("CSV: each fault has its place and its line", "[csv]") {
   CHECK_THROWS_WITH(parse("altitude_km,,b\n"), Equals("rays.csv:1:13: a column without a name"));
   CHECK_THROWS_WITH(parse(std::string(300, ',')), Contains("301 columns"));
   CHECK_THROWS_WITH(parse(head + "1," + std::string(1000, 'x')),
-                    Contains("xxx...'"));                              // short, whatever the file holds
-  CHECK_THROWS_WITH(parse(head + "1,\x1b[2J\n"), Contains("'?[2J'"));  // and harmless to a terminal
+                    Contains("xxx...'"));                                  // short, whatever the file holds
+  CHECK_THROWS_WITH(parse(head + "1,\x1b[2J\n"), Contains("'\\x1b[2J'"));  // and harmless to a terminal
   std::string many = head;
   for (int i = 0; i < 1'000'001; ++i) many += "1,2\n";
   CHECK_THROWS_WITH(parse(many), Equals("rays.csv:1000002:1: more than the 1000000 rows accepted"));
+}
+
+TEST_CASE("CSV: a byte order mark and every kind of line end are read as if they were not there", "[csv]") {
+  const std::string plain = "altitude_km,view_zenith_deg\n1,2\n3,4\n";
+  const std::vector<double> wanted{1.0, 3.0};
+  for (const char* end : {"\n", "\r\n", "\r"})
+    for (const char* mark : {"", "\xEF\xBB\xBF"}) {
+      std::string text = mark;
+      for (const char c : plain) text += c == '\n' ? std::string(end) : std::string(1, c);
+      const CsvTable t = parse(text);
+      CHECK(t.names == std::vector<std::string>{"altitude_km", "view_zenith_deg"});
+      CHECK(t.column("altitude_km") == wanted);
+      CHECK_THROWS_WITH(parse(text + "1,x"), Contains("rays.csv:4:3: view_zenith_deg 'x'"));
+    }
+  CHECK_THROWS_WITH(parse("\xFF\xFE"
+                          "a,b"),
+                    Equals("rays.csv: UTF-16 text; accepted is UTF-8"));
 }
 
 TEST_CASE("CSV: noise ends in Error or success, nothing else", "[csv]") {

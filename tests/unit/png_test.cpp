@@ -1,6 +1,7 @@
 // PNG and whole-file writing: round trips, text chunks, and files that are missing, cut short or damaged.
 #include "common/image/png.hpp"
 
+#include <lodepng.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 
@@ -49,6 +50,24 @@ uint32_t crc_of(const std::string& bytes, size_t at, size_t count) {  // bit by 
   return ~crc;
 }
 
+std::string deflated(const std::string& text) {
+  std::vector<uint8_t> out;
+  const std::vector<uint8_t> in(text.begin(), text.end());
+  REQUIRE(lodepng::compress(out, in) == 0);
+  return {out.begin(), out.end()};
+}
+
+// A PNG with one more chunk behind its header.
+std::string with_chunk(const std::string& png, const std::string& type, const std::string& data) {
+  const auto big_endian = [](uint32_t v) {
+    return std::string{static_cast<char>(v >> 24), static_cast<char>(v >> 16), static_cast<char>(v >> 8),
+                       static_cast<char>(v)};
+  };
+  const std::string covered = type + data;
+  return png.substr(0, 33) + big_endian(static_cast<uint32_t>(data.size())) + covered +
+         big_endian(crc_of(covered, 0, covered.size())) + png.substr(33);
+}
+
 }  // namespace
 
 TEST_CASE("8-bit PNG round trips exactly, odd sizes too", "[png]") {
@@ -63,16 +82,24 @@ TEST_CASE("8-bit PNG round trips exactly, odd sizes too", "[png]") {
   }
 }
 
-TEST_CASE("16-bit PNG keeps all sixteen bits", "[png]") {
+TEST_CASE("16-bit grayscale keeps all sixteen bits, and is the only kind a height map may be", "[png]") {
   const TemporaryDirectory dir;
-  Image16 wrote{3, 5, {}};
-  for (int i = 0; i < 45; ++i) wrote.rgb.push_back(static_cast<uint16_t>(i * 1456 + 1));
-  image::write_png16(dir / "a.png", wrote);
-  CHECK(image::read_png16(dir / "a.png").rgb == wrote.rgb);
+  std::vector<uint16_t> wrote;
+  std::vector<uint8_t> raw, packed;
+  for (int i = 0; i < 15; ++i) {
+    wrote.push_back(static_cast<uint16_t>(i * 4369 + 1));
+    raw.insert(raw.end(), {static_cast<uint8_t>(wrote.back() >> 8), static_cast<uint8_t>(wrote.back())});
+  }
+  REQUIRE(lodepng::encode(packed, raw, 3, 5, LCT_GREY, 16) == 0);
+  put(dir / "a.png", {packed.begin(), packed.end()});
+  const Image16 read = image::read_png16(dir / "a.png");
+  CHECK(read.width == 3);
+  CHECK(read.height == 5);
+  CHECK(read.gray == wrote);
   const Image8 narrowed = image::read_png8(dir / "a.png");  // the high byte
-  for (size_t i = 0; i < 15; ++i) CHECK(int(narrowed.rgba[i * 4]) == wrote.rgb[i * 3] >> 8);
+  for (size_t i = 0; i < 15; ++i) CHECK(int(narrowed.rgba[i * 4]) == wrote[i] >> 8);
   image::write_png8(dir / "b.png", {1, 1, {0x12, 0x80, 0xFF, 0xFF}});
-  CHECK(image::read_png16(dir / "b.png").rgb == std::vector<uint16_t>{0x1212, 0x8080, 0xFFFF});
+  CHECK_THROWS_WITH(image::read_png16(dir / "b.png"), Contains("b.png: 8 bits a sample, not grayscale alone"));
 }
 
 TEST_CASE("text chunks round trip with line breaks and UTF-8", "[png]") {
@@ -95,6 +122,35 @@ TEST_CASE("text chunks round trip with line breaks and UTF-8", "[png]") {
            {"", "t"}, {std::string(80, 'k'), "t"}, {"k\n", "t"}, {"k", most + "x"}, {"k", std::string(3, '\0')}})
     CHECK_THROWS_AS(image::write_png8(dir / "c.png", noise8(1, 1), {{key, text}}), Error);
   CHECK_FALSE(fs::exists(dir / "c.png"));
+}
+
+TEST_CASE("text is found however another program stored it", "[png]") {
+  const TemporaryDirectory dir;
+  const std::string sound = image::encode_png8(noise8(3, 2)), scene = "version = 1\nname = \"M\u00fcnchen 43\u00b0\"\n";
+  const auto read = [&](const std::string& type, const std::string& data) {
+    put(dir / "a.PNG", with_chunk(sound, type, "scene" + data));
+    return image::read_png_text(dir / "a.PNG", "scene").value();
+  };
+  const std::string zero(1, '\0'), one(1, '\1');
+  CHECK(read("tEXt", zero + scene) == scene);  // UTF-8, as many write it
+  CHECK(read("zTXt", zero + zero + deflated(scene)) == scene);
+  CHECK(read("iTXt", zero + zero + zero + "en" + zero + "Szene" + zero + scene) == scene);
+  CHECK(read("iTXt", zero + one + zero + "en" + zero + zero + deflated(scene)) == scene);
+  CHECK_THROWS_WITH(read("zTXt", zero + one + deflated(scene)), Contains("a.PNG: text 'scene' of the PNG is damaged"));
+  CHECK_THROWS_WITH(read("zTXt", zero + zero + "no deflate"), Contains("text 'scene' of the PNG is damaged"));
+}
+
+TEST_CASE("PNG: what would inflate beyond all bounds is refused", "[png]") {
+  const TemporaryDirectory dir;
+  const std::string sound = image::encode_png8(noise8(3, 2)), bomb = deflated(std::string(size_t{64} << 20, 'x'));
+  REQUIRE(bomb.size() < 400'000);
+  put(dir / "text.png", with_chunk(sound, "zTXt", std::string("scene\0\0", 7) + bomb));
+  CHECK_THROWS_WITH(image::read_png_text(dir / "text.png", "scene"), Contains("unreasonably large"));
+  CHECK_NOTHROW(image::read_png8(dir / "text.png"));  // which does not look at it
+  put(dir / "long.png", with_chunk(sound, "tEXt", std::string("scene\0", 6) + std::string((1 << 20) + 1, 'x')));
+  CHECK_THROWS_WITH(image::read_png_text(dir / "long.png", "scene"), Contains("larger than 1048576 bytes"));
+  put(dir / "pixels.png", with_chunk(sound.substr(0, 33) + sound.substr(sound.size() - 12), "IDAT", bomb));
+  CHECK_THROWS_WITH(image::read_png8(dir / "pixels.png"), Contains("larger than desired"));
 }
 
 TEST_CASE("PNG: bad files are named, with what is wrong", "[png]") {
@@ -134,7 +190,7 @@ TEST_CASE("PNG: bad files are named, with what is wrong", "[png]") {
   for (size_t i = 0; i < 4; ++i)
     odd[at + 4 + length + i] = static_cast<char>(crc_of(odd, at, length + 4) >> (24 - 8 * i));
   put(dir / "odd.png", odd);
-  CHECK_THROWS_WITH(image::read_png8(dir / "odd.png"), Contains("damaged in the chunk at byte 33"));
+  CHECK_THROWS_WITH(image::read_png8(dir / "odd.png"), Contains("odd.png: PNG is damaged: unknown chunk type"));
 
   CHECK_THROWS_WITH(image::write_png8(dir / "out.png", {0, 0, {}}), Contains("0x0"));
   CHECK_THROWS_WITH(image::write_png8(dir / "out.png", {16385, 1, {}}), Contains("16385x1"));
@@ -222,4 +278,31 @@ TEST_CASE("atomic writing: all or nothing, and no litter", "[atomic_file]") {
   CHECK_NOTHROW(read_file(dir / "a", 14));
   CHECK_THROWS_WITH(read_file(dir / "a/b", 14), Contains("Not a directory"));
   CHECK_THROWS_WITH(read_file("/dev/zero", 14), Contains("device"));
+}
+
+TEST_CASE("atomic writing goes through symbolic links and keeps permissions", "[atomic_file]") {
+  const TemporaryDirectory dir;
+  fs::create_directory(dir / "far");
+  write_file_atomically(dir / "far/target", std::string_view("first"));
+  fs::permissions(dir / "far/target", fs::perms::owner_read | fs::perms::owner_write);
+  fs::create_symlink("far/target", dir / "link");
+  fs::create_symlink("link", dir / "link_to_link");
+  for (const char* name : {"link", "link_to_link"}) {
+    write_file_atomically(dir / name, std::string_view(name));
+    CHECK(fs::is_symlink(dir / name));
+    CHECK(read_file(dir / "far/target", 100) == name);
+  }
+  CHECK(fs::status(dir / "far/target").permissions() == (fs::perms::owner_read | fs::perms::owner_write));
+  fs::create_symlink("far/new", dir / "to_nothing");
+  write_file_atomically(dir / "to_nothing", std::string_view("made"));
+  CHECK(read_file(dir / "far/new", 100) == "made");
+  CHECK(fs::is_symlink(dir / "to_nothing"));
+  fs::create_symlink("b", dir / "a");
+  fs::create_symlink("a", dir / "b");
+  CHECK_THROWS_WITH(write_file_atomically(dir / "a", std::string_view("x")), Contains("/a': its symbolic links"));
+  fs::create_symlink("gone/x", dir / "astray");
+  CHECK_THROWS_WITH(write_file_atomically(dir / "astray", std::string_view("x")), Contains("/gone': No such file"));
+  fs::create_symlink("far", dir / "folder");
+  CHECK_THROWS_WITH(write_file_atomically(dir / "folder", std::string_view("x")), Contains("a directory"));
+  CHECK(std::distance(fs::directory_iterator(dir / "far"), fs::directory_iterator()) == 2);  // no litter
 }

@@ -40,14 +40,16 @@ TEST_CASE("each refusal names file, line, column and what is accepted", "[scene]
       // the file as a whole; `rest` starts on line 2
       {"", "no views at f:1:1: a scene has at least one [[view]]"},
       {"wind = 1\n" + kView,
-       "unknown section or key 'wind' at f:2:1: known are version, name, planet, medium, sun, view, terrain, "
-       "post, settings"},
-      {"[clouds]\n" + kView,
-       "section 'clouds' at f:2:2: not known to this build, which knows planet, medium, sun, view, terrain, post, "
-       "settings"},
+       "unknown section or key 'wind' at f:2:1: known are name, time_s, version, planet, medium, sun, "
+       "view, path, terrain, post, settings"},
       {kView + "[[fog]]\n",
-       "section 'fog' at f:4:3: not known to this build, which knows planet, medium, sun, view, terrain, post, "
-       "settings"},
+       "unknown section or key 'fog' at f:4:3: known are name, time_s, version, planet, medium, sun, view, path, "
+       "terrain, post, settings"},
+      {"time_s = 60\n" + kView,
+       "time_s in a scene without a latitude at f:2:10: accepted beside latitude_deg in [sun], about whose pole the "
+       "sun "
+       "turns"},
+      {"time_s = 1e10\n" + kView, "time_s = 10000000000 at f:2:10: accepted is a number from -1e+09 to 1e+09 s"},
       {"name = \"a b\"\n", "name = 'a b' at f:2:8: accepted is quoted text of 1 to 64 letters, digits, _, - or ."},
       {"name = \"a\\nb\"\n",
        "name = 'a\\x0ab' at f:2:8: accepted is quoted text of 1 to 64 letters, digits, _, - or ."},
@@ -86,11 +88,15 @@ TEST_CASE("each refusal names file, line, column and what is accepted", "[scene]
        "planet.ground_albedo[2] = nan at f:3:28: accepted is a number from 0 to 1 or three of them, [r, g, "
        "b]"},
       // medium
-      {"[[medium]]\n", "no kind in medium at f:2:1: accepted is kind = \"rayleigh\", \"mie\" or \"ozone\""},
+      {"[[medium]]\n", "no kind in medium at f:2:1: accepted is one of \"rayleigh\", \"mie\", \"ozone\""},
       {"[[medium]]\nkind = \"dust\"\n",
        "medium.kind = 'dust' at f:3:8: accepted is one of \"rayleigh\", \"mie\", \"ozone\""},
-      {"[[medium]]\nkind = \"mie\"\n", "no scattering_per_km in medium 'mie' at f:2:1: accepted is 0 to 100 km^-1"},
-      {"[[medium]]\nkind = \"ozone\"\n", "no absorption_per_km in medium 'ozone' at f:2:1: accepted is 0 to 100 km^-1"},
+      {"[[medium]]\nkind = \"mie\"\n",
+       "no scattering_per_km in medium 'mie' at f:2:1: accepted is a number from 0 to 100 km^-1 or three of them, [r, "
+       "g, b]"},
+      {"[[medium]]\nkind = \"ozone\"\n",
+       "no absorption_per_km in medium 'ozone' at f:2:1: accepted is a number from 0 to 100 km^-1 or three of them, "
+       "[r, g, b]"},
       {"[[medium]]\nkind = \"rayleigh\"\ng = 0\n",
        "unknown key 'g' in medium 'rayleigh' at f:4:1: known are kind, scattering_per_km, profile, "
        "scale_height_km, phase"},
@@ -139,9 +145,6 @@ TEST_CASE("each refusal names file, line, column and what is accepted", "[scene]
       {"[sun]\nutc = \"now\"\nlatitude_deg = 4\n",
        "sun.utc without longitude_deg at f:3:7: accepted is zenith_deg and azimuth_deg, or utc, latitude_deg "
        "and longitude_deg together"},
-      {"[sun]\nlatitude_deg = 4\n",
-       "sun.latitude_deg without utc at f:3:16: accepted is zenith_deg and azimuth_deg, or utc, latitude_deg "
-       "and longitude_deg together"},
       {"[sun]\nutc = \"now\"\nlatitude_deg = 4\nlongitude_deg = 4\nzenith_deg = 4\n",
        "sun.zenith_deg given beside utc at f:6:14: accepted is one of the two"},
       {"[sun]\nutc = \"now\"\nlatitude_deg = 91\nlongitude_deg = 4\n",
@@ -152,7 +155,31 @@ TEST_CASE("each refusal names file, line, column and what is accepted", "[scene]
       {"[sun]\nutc = 2026-06-21T10:30:00\nlatitude_deg = 4\nlongitude_deg = 4\n",
        "sun.utc = a date or time at f:3:7: accepted is quoted text, for example \"2026-06-21T10:30:00\""},
       // views, post, settings
-      {"[[view]]\n", "no name in view at f:2:1: every [[view]] has one, for example name = \"horizon\""},
+      {"[[view]]\n", "no name in view at f:2:1: accepted is quoted text of 1 to 64 letters, digits, _, - or ."},
+      {kView + "latitude_deg = 4\nlongitude_deg = 4\n",
+       "a place by half at f:4:16: accepted are latitude_deg and longitude_deg together, of the scene's place in [sun] "
+       "and of the view"},
+      {"[sun]\nlatitude_deg = 4\nlongitude_deg = 4\n" + kView + "longitude_deg = 4\n",
+       "a place by half at f:7:17: accepted are latitude_deg and longitude_deg together, of the scene's place in [sun] "
+       "and of the view"},
+      {kView + "east_km = 1\nlongitude_deg = 4\n",
+       "view.longitude_deg given beside east_km at f:5:17: accepted is one of the two"},
+      // paths
+      {kView + "[[path]]\nname = \"p\"\n",
+       "no views in path at f:4:1: accepted are up to 64, [a, b, ...], names of 1 to 64 letters, digits, _, - or ."},
+      {kView + "[[path]]\nname = \"p\"\nviews = [\"v\", \"w\"]\ntime_s = [0, 1]\n",
+       "path.views at f:6:9: accepted are names of views"},
+      {kView + "[[path]]\nname = \"p\"\nviews = [\"v\"]\ntime_s = [0]\n",
+       "path of one view at f:6:9: accepted are two or more"},
+      {kView + "[[path]]\nname = \"p\"\nviews = [\"v\", \"v\"]\ntime_s = [0]\n",
+       "path.time_s has 1 numbers at f:7:10: accepted is one for each of the 2 views"},
+      {kView + "[[path]]\nname = \"p\"\nviews = [\"v\", \"v\"]\ntime_s = [1, 1]\n",
+       "path.time_s does not rise at f:7:10: accepted are times each later than the one before"},
+      {kView + "[[path]]\nname = \"p\"\nviews = [\"v\", \"v\"]\ntime_s = [1, nan]\n",
+       "path.time_s = nan at f:7:14: accepted is a number from -1e+06 to 1e+06 s"},
+      {kView + "[[path]]\nname = \"p\"\nviews = [\"v\", \"v\"]\ntime_s = [0, 1]\nmoment_s = [0, 1]\n",
+       "path.moment_s in a scene without a latitude at f:8:12: accepted beside latitude_deg in [sun], about whose pole "
+       "the sun turns"},
       {kView + kView, "second view 'v' at f:5:8: each name once"},
       {kView + "fov_deg = 171\n", "view.fov_deg = 171 at f:4:11: accepted is a number from 1 to 170 deg"},
       {kView + "altitude_km = -0.001\n",
@@ -170,6 +197,15 @@ TEST_CASE("each refusal names file, line, column and what is accepted", "[scene]
       {kView + "[terrain]\nscale = 2\n",
        "unknown key 'scale' in terrain at f:5:1: known are height_map, extent_km, height_km, size, seed, shadows, "
        "signs_azimuth_deg"},
+      {"[planet]\nground_radius_km = 120\ntop_radius_km = 130\n" + kView + "[terrain]\nextent_km = 121\n",
+       "terrain.extent_km = 121 at f:8:13: accepted is a number from 1 to 120 km"},
+      {"[planet]\nground_radius_km = 120\ntop_radius_km = 130\n" + kView + "[terrain]\n",
+       "terrain.extent_km = 128 at f:7:1: accepted is a number from 1 to 120 km: no map is wider than the planet's "
+       "radius"},
+      {"[planet]\nground_radius_km = 6360\ntop_radius_km = 6362\n" + kView + "[terrain]\nheight_km = 2.5\n",
+       "terrain.height_km = 2.5 at f:8:13: accepted is a number from 0 to 2 km"},
+      {"[planet]\nground_radius_km = 6360\ntop_radius_km = 6362\n" + kView + "[terrain]\n",
+       "terrain.height_km = 3 at f:7:1: accepted is a number from 0 to 2 km: no hill stands above the air"},
       {kView + "[[terrain]]\n", "terrain = an array at f:4:1: accepted is a section, [terrain]"},
       {kView + "[terrain]\nheight_map = 3\n",
        "terrain.height_map = 3 at f:5:14: accepted is the name of a 16-bit grayscale PNG file, quoted"},
@@ -189,7 +225,7 @@ TEST_CASE("each refusal names file, line, column and what is accepted", "[scene]
       {kView + "[terrain]\nsigns_azimuth_deg = 400\n",
        "terrain.signs_azimuth_deg = 400 at f:5:21: accepted is a number from -360 to 360 deg"},
       {kView + "[settings]\nmie.g = 0.8\n",
-       "settings.mie is a table at f:5:1: a knob's name is quoted, for example \"mie.g\" = 0.8"},
+       "settings.mie is a table at f:5:1: a knob's name is quoted, for example \"view.steps\" = 64"},
       {kView + "[settings]\n\"mie.g\" = [1]\n",
        "settings.mie.g = an array at f:5:11: accepted is a finite number, true, false or quoted text of 1 to "
        "200 characters"},

@@ -104,6 +104,17 @@ TEST_CASE("the sun moves 15 degrees an hour, smoothly over midnight, leap second
   CHECK(step("2026-03-20T23:59:59", "2026-03-21T00:00:00", 43.6) == Approx(0.00418).epsilon(0.01));
   CHECK(step("2016-12-31T23:59:59", "2017-01-01T00:00:00", 43.6) < 0.009);
   CHECK(step("2016-12-31T23:59:59", "2017-01-01T00:00:00", 43.6) > 0.003);
+  // The leap second itself: half way, and only where there was one.
+  for (const char* half : {"2016-12-31T23:59:60", "2016-12-31T23:59:60Z"}) {
+    CHECK(step("2016-12-31T23:59:59", half, 43.6) == Approx(0.00418).epsilon(0.1));
+    CHECK(step(half, "2017-01-01T00:00:00", 43.6) == Approx(0.00418).epsilon(0.1));
+  }
+  CHECK(step("2016-12-31T23:59:60.999", "2017-01-01T00:00:00", 43.6) < 1e-5);
+  for (const char* none : {"2015-12-31T23:59:60", "2016-12-31T23:58:60", "2016-12-31T23:59:61"}) {
+    INFO(none);
+    CHECK_THAT(refused(none), Catch::StartsWith("utc '") && Catch::Contains("accepted is YYYY-MM-DDThh:mm[:ss]"));
+  }
+  CHECK_THAT(refused("2015-12-31T23:59:60"), Catch::Contains("no leap second stands there"));
   CHECK(step("1959-12-31T23:59:59", "1960-01-01T00:00:00", 43.6) < 0.009);
   // Places side by side see the sun side by side, across the date line and next to the pole.
   CHECK(separation_deg(sun_angles("2026-05-01T12:00", 43.6, -180), sun_angles("2026-05-01T12:00", 43.6, 180)) < 1e-9);

@@ -68,13 +68,9 @@ void main() {
     result[0] = ray.hits_air ? 1.0 : 0.0;
     result[1] = ray.length_km;
     result[2] = earth.top_km - tangent_altitude(earth.ground_radius_km, a[1], a[3], a[2]) > 0.0 ? 1.0 : 0.0;
-  } else {  // angular radius, 1 - cosine, cosine: the disc; then with the cosine alone
-    const vec3 held = sun_disc_radiance(vec3(1.0), a[1], a[2]);
-    const vec3 naive = sun_disc_radiance(vec3(1.0), a[1], 1.0 - a[3]);
-    for (int i = 0; i < 3; ++i) {
-      result[i] = held[i];
-      result[3 + i] = naive[i];
-    }
+  } else {  // angular radius, cosine at the sun's surface: the disc
+    const vec3 disc = sun_disc_radiance(vec3(1.0), a[1], a[2]);
+    for (int i = 0; i < 3; ++i) result[i] = disc[i];
   }
   for (int i = 0; i < 8; ++i) outputs[8 * item + i] = result[i];
 }

@@ -64,17 +64,17 @@ void main() {
   if (what == 3) {  // majorant against density: altitude, zenith cosine, scale height, share of the length
     const float sine = sqrt((1.0 - a.y) * (1.0 + a.y));
     const bool down = a.y < 0.0 && tangent_altitude(6360.0, a.x, a.y, sine) < 0.0;
-    const Course course = course_from(6360.0, 100.0, a.x, a.y, sine, down);
-    const float t = course.length_km * a.w;
-    Majorant piece = majorant_from(course, a.z, 0.0);
+    const PathSegment segment = segment_from(6360.0, 100.0, a.x, a.y, sine, down);
+    const float t = segment.length_km * a.w;
+    Majorant piece = majorant_from(segment, a.z, 0.0);
     float from = 0.0;
     for (int i = 0; i < 8 && piece.end_km < t; ++i) {
       from = piece.end_km;
-      piece = majorant_from(course, a.z, from);
+      piece = majorant_from(segment, a.z, from);
     }
     const float density = exp(-max(altitude_along(6360.0, a.x, a.y, t), 0.0) / a.z);
-    low = vec4(piece.density * exp(-piece.falls_per_km * (t - from)), density, course.length_km, majorant_column(course, a.z));
-    const vec3 column = columns_along(earth(0.8, 0.0, 0.0), course, course.length_km, down ? 0.0 : 100.0);
+    low = vec4(piece.density * exp(-piece.falls_per_km * (t - from)), density, segment.length_km, majorant_column(segment, a.z));
+    const vec3 column = columns_along(earth(0.8, 0.0, 0.0), segment, segment.length_km, down ? 0.0 : 100.0);
     high = vec4(column, 0.0);
   }
   if (what == 4) {  // ratio tracking to the sun: altitude, zenith cosine, path, paths

@@ -32,4 +32,10 @@ MUTANTS = [
      "1.0 - tau * (0.5 - tau", "1.0 - tau * (0.5 + tau", "hard: the mean transmittance of almost no air"),
     ("the sun's disc without its normalisation", "05_single_scattering/sun_disc.glsl",
      "* (alpha + vec3(2.0, 2.0, 2.0)) * 0.5;", ";", "sun disc: as a whole it sends exactly the irradiance"),
+    ("the sun's disc in one piece per pixel", "04_air/sun_in_pixel.glsl",
+     "disc.side = clamp(int(ceil(8.0 * max(wide.x, wide.y))), 2, 12);", "disc.side = 1;", "sun pixels: pictures of every size*"),
+    ("rows of the disc that do not lean with the ellipse", "04_air/sun_in_pixel.glsl",
+     "disc.shift = x * y / across2 * half_height / half_width;", "disc.shift = 0.0;", "sun pixels: from a far star's disc*"),
+    ("the disc shines through the horizon", "04_air/sun_in_pixel.glsl",
+     "    node.share *= seen / height;\n", "", "sun pixels: the horizon cuts the disc*"),
 ]

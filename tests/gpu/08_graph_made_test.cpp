@@ -1,0 +1,252 @@
+// What the frame graph makes, on a device: names against shaders, mips, iteration, histories, more passes than a pool
+// of timestamps has; and two hundred frames in which everything changes, under synchronization validation.
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "chapters/06_display/display.hpp"
+#include "common/gpu/instance.hpp"
+#include "tests/gpu/10_sky.hpp"
+#include "tests/gpu/11_parts.hpp"
+
+using namespace welkin;
+using namespace welkin::test;
+
+namespace {
+
+// A graph alone, executed outside of any frame.
+struct Alone {
+  gpu::Pipelines pipelines{device()};
+  graph::Graph graph{device(), pipelines};
+  gpu::CommandPool pool = gpu::create_command_pool(device());
+  gpu::Timer timer{device()};
+  uint32_t index = 0;
+
+  void execute() {
+    const gpu::Image no_target;
+    const CameraRays no_camera{};
+    gpu::run_once(device(), pool, [&](VkCommandBuffer commands) {
+      timer.begin_frame(commands);
+      graph.execute({commands, no_target, no_camera, timer, index++, 0, 0.0});
+    });
+  }
+  std::string refused(graph::Step step) {
+    graph::Pass pass{.name = "tried"};
+    pass.steps.push_back(std::move(step));
+    graph.add(std::move(pass));
+    try {
+      graph.compile();
+      execute();
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "accepted";
+  }
+};
+
+}  // namespace
+
+TEST_CASE("graph: a shader says what it has, and a wrong name, type or size is one clear line") {
+  const gpu::ShaderInterface exposure = gpu::reflect(gpu::load_spirv("06_display/exposure.comp"), "exposure");
+  REQUIRE(exposure.bindings.size() == 2);
+  CHECK((exposure.bindings[0].name == "Histogram" && exposure.bindings[0].reads && !exposure.bindings[0].writes &&
+         exposure.bindings[0].bytes == 1024));
+  CHECK((exposure.bindings[1].name == "State" && exposure.bindings[1].reads && exposure.bindings[1].writes &&
+         exposure.bindings[1].bytes == 16));
+  CHECK(exposure.push_constant_bytes == 28);
+  std::vector<uint32_t> cut = gpu::load_spirv("06_display/exposure.comp");
+  cut.resize(cut.size() - 3);
+  CHECK_THROWS_WITH(gpu::reflect(cut, "exposure"), "shader exposure: its SPIR-V is cut short; build it again");
+
+  const auto record = [](const graph::Recorder& r) { r.push(1.0f).dispatch(1); };
+  const auto try_step = [&](const std::string& shader, gpu::Constants constants,
+                            const std::vector<std::pair<std::string, bool>>& names) {
+    Alone alone;
+    graph::Step step{.shader = shader, .constants = std::move(constants), .record = record};
+    for (const auto& [name, is_map] : names) {
+      const graph::Resource resource =
+          is_map ? alone.graph.add_image(name, {.size = {8, 8}, .format = VK_FORMAT_R32_SFLOAT})
+                 : alone.graph.add_buffer(name, {4});
+      step.bindings.push_back({name, resource});
+      alone.graph.set_output(resource);
+    }
+    return alone.refused(std::move(step));
+  };
+  const std::string mip = "tests/08_first_mip.comp";
+  CHECK(try_step(mip, {}, {{"map", true}}).find("its push constants are 0 bytes, and 4 were given") !=
+        std::string::npos);
+  CHECK(try_step(mip, {}, {}).find("nothing is bound to 'map'") != std::string::npos);
+  CHECK(try_step(mip, {}, {{"map", true}, {"mop", true}}).find("has no binding 'mop'; it has map") !=
+        std::string::npos);
+  CHECK(try_step(mip, {}, {{"map", false}}).find("an image is wanted, and this is a buffer") != std::string::npos);
+  CHECK(try_step(mip, {{"SCALES", 1.0f}}, {{"map", true}}).find("no constant 'SCALES'; it has SCALE") !=
+        std::string::npos);
+  CHECK(try_step(mip, {{"SCALE", 1}}, {{"map", true}}).find("constant 'SCALE' is of type float, and a int was given") !=
+        std::string::npos);
+}
+
+TEST_CASE("graph: mips one after the other in one pass, each waiting for the one before") {
+  Alone alone;
+  const graph::Resource map =
+      alone.graph.add_image("map", {.size = {16, 16}, .format = VK_FORMAT_R32_SFLOAT, .mips = 5});
+  graph::Pass pass{.name = "mips"};
+  pass.steps.push_back({.shader = "tests/08_first_mip.comp",
+                        .constants = {{"SCALE", 2.0f}},
+                        .bindings = {{"map", map, {}, 0}},
+                        .record = [](const graph::Recorder& r) { r.dispatch(2, 2); }});
+  for (int mip = 1; mip < 5; ++mip)
+    pass.steps.push_back({.shader = "tests/08_next_mip.comp",
+                          .bindings = {{"finer", map, {}, mip - 1}, {"coarser", map, {}, mip}},
+                          .record = [](const graph::Recorder& r) { r.dispatch(1); }});
+  alone.graph.add(std::move(pass));
+  alone.graph.set_output(map);
+  alone.graph.compile();
+  CHECK(alone.graph.barriers().size() == 9);  // a first layout for each of five, and four reads
+  alone.execute();
+  const gpu::Image& image = alone.graph.image(map);
+  const gpu::Buffer back =
+      gpu::create_buffer(device(), "back", 4, VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Where::readback);
+  gpu::run_once(device(), alone.pool, [&](VkCommandBuffer commands) {
+    const VkBufferImageCopy region{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 4, 0, 1}, .imageExtent = {1, 1, 1}};
+    const VkMemoryBarrier2 all{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+                               .srcStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                               .srcAccessMask = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+                               .dstStageMask = VK_PIPELINE_STAGE_2_COPY_BIT,
+                               .dstAccessMask = VK_ACCESS_2_TRANSFER_READ_BIT};
+    const VkDependencyInfo info{
+        .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &all};
+    vkCmdPipelineBarrier2(commands, &info);
+    vkCmdCopyImageToBuffer(commands, image.handle, VK_IMAGE_LAYOUT_GENERAL, back.handle, 1, &region);
+    gpu::buffer_barrier(commands, back.handle, gpu::kTransferWrite, gpu::kHostRead);
+  });
+  CHECK(back.as<float>()[0] == 2.0f * 255.0f);  // the largest of all
+}
+
+TEST_CASE("graph: a history holds last frame's, until a cut, a resize or a frame without it") {
+  Scene scene;
+  const Settings settings(std::vector<Knob>{});
+  const std::string no_fault;
+  const app::Context context{device(), scene, settings, no_fault};
+  app::Effect counter{.name = "counter", .chapter = 8};
+  counter.declare = [](app::Builder& builder, app::Board& board) {
+    const graph::Resource frames = builder.graph.add_history("frames"), picture = builder.picture(board, "picture");
+    graph::Pass pass{.name = "count", .changed = [](const app::Frame&) { return true; }};
+    const auto record = [frames](const graph::Recorder& r) {
+      r.push(r.graph.valid(frames) ? 1 : 0).dispatch_over(r.graph.image(frames).size);
+    };
+    pass.steps.push_back({.shader = "tests/08_history.comp",
+                          .bindings = {{.name = "before", .resource = frames, .last_frame = true}, {"now", frames}},
+                          .record = record});
+    pass.steps.push_back({.shader = "tests/08_history.comp",
+                          .bindings = {{.name = "before", .resource = frames, .last_frame = true}, {"now", picture}},
+                          .record = record});
+    builder.graph.add(std::move(pass));
+  };
+  app::Composition program(context, {counter});
+  const app::Chapter chapter;
+  const auto count = [&](app::Renderer& renderer, uint32_t index, double altitude_km = 1.0) {
+    renderer.draw(app::pose_of({.altitude_km = altitude_km}, 6360.0), 0.0, 1, index);
+    return renderer.picture().pixels.front();
+  };
+  app::Renderer first(context, chapter, program, {16, 8});
+  CHECK(count(first, 0) == glm::vec4(1.0f, 1.0f, 1.0f, 1.0f));  // count, cut, last altitude, altitude
+  CHECK(count(first, 1, 2.0) == glm::vec4(2.0f, 0.0f, 1.0f, 2.0f));
+  CHECK(count(first, 2, 3.0) == glm::vec4(3.0f, 0.0f, 2.0f, 3.0f));
+  app::Renderer second(context, chapter, program, {24, 8});  // another size
+  CHECK(count(second, 3, 4.0) == glm::vec4(1.0f, 1.0f, 4.0f, 4.0f));
+  CHECK(count(second, 4, 5.0).r == 2.0f);
+  program.graph().cut();
+  CHECK(count(second, 5).r == 1.0f);
+}
+
+TEST_CASE("graph: twenty passes are timed, and each waits for the one before") {
+  Alone alone;
+  std::vector<graph::Resource> maps;
+  for (int i = 0; i < 20; ++i) {
+    maps.push_back(alone.graph.add_image("map", {.size = {8, 8}, .format = VK_FORMAT_R32_SFLOAT}));
+    graph::Pass pass{.name = "pass " + std::to_string(i)};
+    if (i == 0)
+      pass.steps.push_back({.shader = "tests/08_first_mip.comp",
+                            .bindings = {{"map", maps[0]}},
+                            .record = [](const graph::Recorder& r) { r.dispatch(1); }});
+    else
+      pass.steps.push_back({.shader = "tests/08_next_mip.comp",
+                            .bindings = {{"finer", maps[i - 1]}, {"coarser", maps[i]}},
+                            .record = [](const graph::Recorder& r) { r.dispatch(1); }});
+    alone.graph.add(std::move(pass));
+  }
+  alone.graph.set_output(maps.back());
+  alone.graph.compile();
+  alone.execute();
+  CHECK(alone.timer.read().size() == 20);
+  CHECK(alone.timer.read().back().name == "pass 19");
+}
+
+// Everything that can come, go or change, in random order; what a window does over an hour, in half a minute.
+TEST_CASE("08 hard: two hundred frames of resizes, dropped scenes and effects on and off, synchronization validated") {
+  gpu::Instance instance(gpu::Validation::sync, {});
+  const gpu::Device watched(instance, gpu::choose_device(gpu::list_devices(instance), ""), false);
+  std::vector<app::Effect> effects = terrain_effects();
+  effects.push_back(exposure());
+  effects.push_back(display());
+  Scene scene = scene_named("noon");
+  Settings settings(app::knobs_of(effects, 11));
+  for (const char* quick :
+       {"multiple_scattering.iterations=3", "multiple_scattering.directions=16", "transmittance.height=16",
+        "terrain.cells=32", "terrain.shadow_size=64", "froxels.size=8", "froxels.slices=8", "aerial.march_slices=8"}) {
+    const auto [name, value] = split_assignment(quick);
+    settings.set(name, value);
+  }
+  const std::string no_fault;
+  const app::Context context{watched, scene, settings, no_fault};
+  app::Composition program(context, std::move(effects));
+  const app::Chapter chapter;
+  std::unique_ptr<app::Renderer> renderer =
+      std::make_unique<app::Renderer>(context, chapter, program, VkExtent2D{24, 16});
+  const std::vector<std::pair<const char*, std::vector<const char*>>> switches{
+      {"orders", {"0", "1"}},
+      
+      {"aerial.method", {"froxels", "march"}},
+      {"tables", {"changed", "all"}},
+      {"sky_view.method", {"auto", "table", "march"}},
+      {"froxels.transmittance", {"colour", "mean"}},
+      {"display.curve", {"aces_hill", "compare"}},
+      {"sky_view.size", {"96x54", "192x108"}},
+      {"multiple_scattering.method", {"moments", "published"}}};
+  Random random(8);
+  double altitude_km = 0.5;
+  for (uint32_t frame = 0; frame < 200; ++frame) {
+    switch (random.next() % 7) {
+      case 0:
+        renderer = std::make_unique<app::Renderer>(
+            context, chapter, program,
+            VkExtent2D{static_cast<uint32_t>(1 + random.next() % 40), static_cast<uint32_t>(1 + random.next() % 24)});
+        break;
+      case 1:
+        scene = scene_named(random.next() % 2 ? "sunset" : "noon");
+        if (scene.terrain) scene.terrain->size = 64;
+        break;
+      case 2:
+        if (scene.terrain)
+          scene.terrain.reset();
+        else
+          scene.terrain = Terrain{.size = 48, .seed = static_cast<int>(random.next() % 3)};
+        break;
+      case 3:
+        if (scene.terrain)
+          scene.terrain->shadows = !scene.terrain->shadows;
+        else
+          scene.sun.disc = !scene.sun.disc;
+        break;
+      case 4: scene.post.manual = !scene.post.manual; altitude_km = random.next() % 3 == 0 ? 400.0 : 0.5; break;
+      default: {
+        const auto& [knob, values] = switches[random.next() % switches.size()];
+        settings.set(knob, values[random.next() % values.size()]);
+      }
+    }
+    renderer->draw(app::pose_of({.altitude_km = altitude_km, .azimuth_deg = double(frame), .elevation_deg = -5.0}, 6360.0), 0.0,
+                   1, frame);
+    if (frame % 10 == 9)
+      for (const glm::vec4& pixel : renderer->picture().pixels) REQUIRE(std::isfinite(pixel.r + pixel.g + pixel.b));
+    REQUIRE(instance.validation_messages().empty());
+  }
+}
