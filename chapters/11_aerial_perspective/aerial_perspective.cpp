@@ -144,8 +144,8 @@ app::Effect aerial_perspective() {
     const int threads = threads_of(context);
     graph::Step step = aerial_step(context, board, colour ? "froxels.comp" : "froxels_mean.comp");
     step.constants.push_back({"THREADS", threads});
-    step.bindings.push_back({"glows", in_scattering});
-    if (colour) step.bindings.push_back({"extinctions", extinction});
+    step.bindings.push_back({"froxel_in_scattering", in_scattering});
+    if (colour) step.bindings.push_back({"froxel_extinction", extinction});
     const auto seen = std::make_shared<ViewChange>();
     const auto reach_km = std::make_shared<float>(0.0f);
     step.record = [context, seen, reach_km, side,

@@ -12,9 +12,6 @@ app::Effect lit_terrain() {
                       ? fmt::format("terrain, and signs in direction {}", *scene.terrain->signs_azimuth_deg)
                       : "terrain, no signs"};
   };
-  effect.key = [](const Scene& scene, const Settings&) {
-    return fmt::format("{}", scene.terrain->signs_azimuth_deg.has_value());
-  };
   effect.declare = [](app::Builder& builder, app::Board& board) {
     const app::Context& context = builder.context;
     const TerrainMaps& maps = board.get<TerrainMaps>("terrain");
@@ -22,17 +19,16 @@ app::Effect lit_terrain() {
     const Froxels* froxels = board.find<Froxels>();
     const graph::Resource picture = builder.picture(board, "picture");
     graph::Step step = aerial_step(context, board, froxels != nullptr ? "compose.comp" : "compose_march.comp");
-    step.constants = joined(step.constants, {{"MARCH_SLICES", context.settings.integer("aerial.march_slices")},
-                                             {"HAS_SIGNS", context.scene.terrain->signs_azimuth_deg.has_value()},
-                                             {"NEAR_KM", static_cast<float>(kNear_km)}});
-    step.bindings.insert(step.bindings.end(), {{"depth_map", maps.depth, {.filter = VK_FILTER_NEAREST}},
+    step.constants.push_back({"MARCH_SLICES", context.settings.integer("aerial.march_slices")});
+    step.constants.push_back({"HAS_EDGES", context.settings.choice("terrain.edges") == "on"});
+    step.bindings.insert(step.bindings.end(), {{"terrain_distance", maps.distance},
                                                {"slope_map", maps.slopes},
                                                {"cover_map", maps.cover},
                                                {"sky", behind},
                                                {"target", picture}});
     if (froxels != nullptr)
-      step.bindings.insert(step.bindings.end(),
-                           {{"glows", froxels->in_scattering}, {"extinctions", froxels->extinction}});
+      step.bindings.insert(step.bindings.end(), {{"froxel_in_scattering", froxels->in_scattering},
+                                                 {"froxel_extinction", froxels->extinction}});
     step.record = [context, picture](const graph::Recorder& r) {
       r.push(aerial_push(context)).dispatch_over(r.graph.image(picture).size);
     };

@@ -1,4 +1,4 @@
-// Maps, shadows and mesh of the terrain. See relief.hpp and docs/chapters/11_aerial_perspective.md.
+// Maps and shadows of the terrain, and where rays meet it. See relief.hpp and docs/chapters/11_aerial_perspective.md.
 #include "chapters/11_aerial_perspective/relief.hpp"
 
 #include <algorithm>
@@ -15,34 +15,17 @@ namespace welkin {
 namespace {
 
 constexpr VkImageUsageFlags kMapUsage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-constexpr int kShadowSteps = 96;
-constexpr double kShadowGrowth = 0.06;  // of the step, per distance: 96 steps reach across the map
-constexpr double kEyes_km = 0.002;      // a camera in a hill is lifted to this height above it
-constexpr gpu::Use kDepthWrite{
-    VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
-    VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
-    VK_IMAGE_LAYOUT_GENERAL};
+constexpr double kEyes_km = 0.002;  // a camera in a hill is lifted to this height above it
 
 struct ShadowPush {
-  glm::vec4 sun, map;
-  glm::ivec4 size;
-};
-
-struct RingPush {
-  glm::vec4 right, up, forward, position, ring;
-};
-
-struct Mesh {
-  int cells = 0;
-  gpu::Buffer indices;
-  uint32_t whole_count = 0, ring_count = 0;
+  glm::vec4 sun;
 };
 
 // Makes a map on the device and fills it, once, before any frame.
 template <typename T>
-gpu::Image upload(const gpu::Device& device, const char* name, VkFormat format, int size,
+gpu::Image upload(const gpu::Device& device, const char* name, VkFormat format, int width, int height,
                   const std::vector<T>& texels) {
-  const VkExtent2D extent{static_cast<uint32_t>(size), static_cast<uint32_t>(size)};
+  const VkExtent2D extent{static_cast<uint32_t>(width), static_cast<uint32_t>(height)};
   gpu::Image image = gpu::create_image(device, name, extent, format, kMapUsage);
   const gpu::Buffer staging = gpu::create_buffer(device, "staging", texels.size() * sizeof(T),
                                                  VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Where::upload);
@@ -53,9 +36,9 @@ gpu::Image upload(const gpu::Device& device, const char* name, VkFormat format, 
     const VkBufferImageCopy copy{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
                                  .imageExtent = {extent.width, extent.height, 1}};
     vkCmdCopyBufferToImage(commands, staging.handle, image.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
-    gpu::image_barrier(commands, image.handle, gpu::kTransferWrite,
-                       {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT,
-                        VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, VK_IMAGE_LAYOUT_GENERAL});
+    gpu::image_barrier(
+        commands, image.handle, gpu::kTransferWrite,
+        {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, VK_IMAGE_LAYOUT_GENERAL});
   });
   return image;
 }
@@ -102,20 +85,20 @@ std::string key_of_maps(const Scene& scene) {
                      t.size, t.seed, scene.planet.ground_radius_km);
 }
 
+// What both passes that walk over the maps know of them, and the maps.
+graph::Step walking(const TerrainMaps& maps, double ground_radius_km, const char* shader) {
+  return {.shader = shader,
+          .constants = {{"GROUND_RADIUS_KM", static_cast<float>(ground_radius_km)},
+                        {"EXTENT_KM", static_cast<float>(maps.map->extent_km)},
+                        {"HIGHEST_KM", maps.map->highest_km},
+                        {"MAP_SIZE", maps.map->size},
+                        {"TREE_LEVELS", maps.levels}},
+          .bindings = {{"height_map", maps.heights}, {"height_maxima", maps.maxima}}};
+}
+
 }  // namespace
 
 // [knobs]
-static Knob cells_knob() {
-  return {.name = "terrain.cells",
-          .unit = "cells",
-          .meaning = "cells across a ring of the mesh; the innermost are as large as the map's samples",
-          .minimum = 32,
-          .maximum = 512,
-          .initial = 128,
-          .integer = true,
-          .rebuilds = true};
-}
-
 static Knob shadow_knob() {
   return {.name = "terrain.shadow_size",
           .unit = "texels",
@@ -127,7 +110,20 @@ static Knob shadow_knob() {
           .rebuilds = true};
 }
 
-std::vector<Knob> terrain_knobs() { return {cells_knob(), shadow_knob()}; }
+static std::vector<Knob> surface_knobs() {
+  return {{.name = "terrain.detail",
+           .meaning = "relief finer than the map's where a ray meets the ground within 250 m",
+           .initial = 1,
+           .choices = {"off", "on"},
+           .rebuilds = true},
+          {.name = "terrain.edges",
+           .meaning = "a crest that a ray passes by less than half a pixel covers a part of it, or nothing",
+           .initial = 1,
+           .choices = {"off", "on"},
+           .rebuilds = true}};
+}
+
+std::vector<Knob> terrain_knobs() { return joined(surface_knobs(), {shadow_knob()}); }
 // [/knobs]
 
 bool ViewChange::differs(const app::Frame& frame) const {
@@ -142,140 +138,51 @@ void ViewChange::note(const app::Frame& frame) {
   position_km_ = frame.position_km, fresh_ = false;
 }
 
-// [mesh]
-// Triangles of a square of cells, and of four squares with a hole in the middle: the ring inside sits on this one's
-// cells, but as both snap to their own grids it may be a cell to the east or to the north.
-static Mesh make_mesh(const gpu::Device& device, int cells) {
-  Mesh mesh{.cells = cells};
-  std::vector<uint32_t> indices;
-  const auto add = [&](int hole_x, int hole_y) {
-    const int quarter = cells / 4;
-    // In columns eight cells wide: their nine vertices are still at hand when the next row wants them again.
-    for (int first = 0; first < cells; first += 8)
-      for (int j = 0; j < cells; ++j)
-        for (int i = first; i < first + 8; ++i) {
-          const bool hole = hole_x >= 0 && i >= quarter + hole_x && i < 3 * quarter + hole_x && j >= quarter + hole_y &&
-                            j < 3 * quarter + hole_y;
-          const uint32_t a = static_cast<uint32_t>(j * (cells + 1) + i), b = a + 1,
-                         c = a + static_cast<uint32_t>(cells) + 1, d = c + 1;
-          if (!hole) indices.insert(indices.end(), {a, b, d, a, d, c});
-        }
+// [maps]
+// The maps on the device; of the map itself only heights stay, for where the camera stands.
+static TerrainMaps upload_maps(app::Builder& builder) {
+  const app::Context& context = builder.context;
+  const auto add = [&](const char* name, VkFormat format, int width, int height, const auto& texels) {
+    return builder.graph.add_filled(name, upload(context.device, name, format, width, height, texels));
   };
-  add(-1, -1);
-  mesh.whole_count = static_cast<uint32_t>(indices.size());
-  for (const int y : {0, 1})
-    for (const int x : {0, 1}) add(x, y);
-  mesh.ring_count = (static_cast<uint32_t>(indices.size()) - mesh.whole_count) / 4;
-  // Into the device's own memory: a frame reads them all, and the host's lies behind a bus.
-  const gpu::Buffer staging = gpu::create_buffer(device, "staging", indices.size() * sizeof(uint32_t),
-                                                 VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Where::upload);
-  std::memcpy(staging.mapped, indices.data(), staging.bytes);
-  mesh.indices =
-      gpu::create_buffer(device, "terrain triangles", staging.bytes,
-                         VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Where::device);
-  const gpu::CommandPool pool = gpu::create_command_pool(device);
-  gpu::run_once(device, pool, [&](VkCommandBuffer commands) {
-    const VkBufferCopy copy{0, 0, staging.bytes};
-    vkCmdCopyBuffer(commands, staging.handle, mesh.indices.handle, 1, &copy);
-    gpu::buffer_barrier(commands, mesh.indices.handle, gpu::kTransferWrite,
-                        {VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT, VK_ACCESS_2_INDEX_READ_BIT});
-  });
-  return mesh;
+  TerrainMap map = make_terrain_map(*context.scene.terrain);
+  check_fits_planet(*context.scene.terrain, context.scene.planet.ground_radius_km);
+  const HeightMaxima maxima = height_maxima(map);
+  TerrainMaps maps;
+  maps.levels = maxima.levels;
+  maps.heights = add("terrain heights", VK_FORMAT_R32_SFLOAT, map.size, map.size, map.height_km);
+  maps.maxima = add("terrain maxima", VK_FORMAT_R32_SFLOAT, maxima.width, maxima.rows, maxima.highest_km);
+  maps.slopes = add("terrain slopes", VK_FORMAT_R32G32_SFLOAT, map.size, map.size, map.slope);
+  maps.cover = add("terrain cover", VK_FORMAT_R16G16B16A16_SFLOAT, map.size, map.size, halves(map.cover));
+  map.slope = {}, map.cover = {};
+  maps.map = std::make_shared<const TerrainMap>(std::move(map));
+  return maps;
 }
-
-static void draw_mesh(const app::Context& context, const TerrainMap& map, const Mesh& mesh, graph::Resource depth_image,
-                      const graph::Recorder& r) {
-  const app::Frame& frame = r.frame;
-  const gpu::Image& target = r.graph.image(depth_image);
-  const VkCommandBuffer commands = frame.commands;
-  const VkRenderingAttachmentInfo depth{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
-                                        .imageView = target.view,
-                                        .imageLayout = VK_IMAGE_LAYOUT_GENERAL,
-                                        .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
-                                        .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
-                                        .clearValue = {.depthStencil = {0.0f, 0}}};
-  const VkRect2D area{{0, 0}, target.size};
-  const VkViewport viewport{0.0f, 0.0f, static_cast<float>(target.size.width), static_cast<float>(target.size.height),
-                            0.0f, 1.0f};
-  const VkRenderingInfo rendering{
-      .sType = VK_STRUCTURE_TYPE_RENDERING_INFO, .renderArea = area, .layerCount = 1, .pDepthAttachment = &depth};
-  vkCmdBeginRendering(commands, &rendering);
-  vkCmdSetViewport(commands, 0, 1, &viewport);
-  vkCmdSetScissor(commands, 0, 1, &area);
-  vkCmdBindIndexBuffer(commands, mesh.indices.handle, 0, VK_INDEX_TYPE_UINT32);
-  const double radius = context.scene.planet.ground_radius_km;
-  const app::LocalFrame at = app::local_frame({.position_km = frame.position_km}, radius);
-  const auto global = [&](const glm::vec3& v) {
-    return at.east * double(v.x) + at.north * double(v.y) + at.up * double(v.z);
-  };
-  const glm::dvec2 below(at.up.x * radius, at.up.y * radius);
-  RingPush push{{global(frame.camera.right), radius},
-                {global(frame.camera.up), map.extent_km},
-                {global(frame.camera.forward), kNear_km},
-                {frame.position_km, 0.0},
-                {0.0, 0.0, below}};
-  // Rings from the camera outwards until one reaches beyond the map on all sides.
-  double cell_km = map.extent_km / map.size;
-  glm::dvec2 inner(0.0);
-  const double reach_km = 0.5 * map.extent_km + std::max(std::abs(below.x), std::abs(below.y));
-  for (int level = 0; level < 24; ++level, cell_km *= 2.0) {
-    const glm::dvec2 middle = glm::floor(below / (2.0 * cell_km)) * 2.0 * cell_km;
-    push.position.w = static_cast<float>(cell_km), push.ring.x = static_cast<float>(middle.x),
-    push.ring.y = static_cast<float>(middle.y);
-    r.push(push);
-    if (level == 0) {
-      vkCmdDrawIndexed(commands, mesh.whole_count, 1, 0, 0, 0);
-    } else {
-      const uint32_t east = inner.x > middle.x ? 1 : 0, north = inner.y > middle.y ? 1 : 0;
-      vkCmdDrawIndexed(commands, mesh.ring_count, 1, mesh.whole_count + (2 * north + east) * mesh.ring_count, 0, 0);
-    }
-    inner = middle;
-    if ((0.5 * mesh.cells - 4.0) * cell_km > reach_km) break;
-  }
-  vkCmdEndRendering(commands);
-}
-// [/mesh]
+// [/maps]
 
 // [terrain]
 app::Effect terrain() {
-  app::Effect effect{.name = "terrain", .chapter = 11, .knobs = {cells_knob()}};
+  app::Effect effect{.name = "terrain", .chapter = 11, .knobs = surface_knobs()};
   effect.wanted = [](const Scene& scene, const Settings&) { return terrain_wanted(scene); };
   effect.key = [](const Scene& scene, const Settings&) { return key_of_maps(scene); };
   effect.declare = [](app::Builder& builder, app::Board& board) {
     const app::Context& context = builder.context;
-    const gpu::Device& device = context.device;
-    TerrainMap made = make_terrain_map(*context.scene.terrain);
-    TerrainMaps maps;
-    maps.heights = builder.graph.add_filled(
-        "terrain heights", upload(device, "terrain heights", VK_FORMAT_R32_SFLOAT, made.size, made.height_km));
-    maps.slopes = builder.graph.add_filled(
-        "terrain slopes", upload(device, "terrain slopes", VK_FORMAT_R32G32_SFLOAT, made.size, made.slope));
-    maps.cover = builder.graph.add_filled(
-        "terrain cover", upload(device, "terrain cover", VK_FORMAT_R16G16B16A16_SFLOAT, made.size, halves(made.cover)));
-    maps.depth = builder.graph.add_image(
-        "terrain depth", {.format = VK_FORMAT_D32_SFLOAT,
-                          .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
-                                   VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
-    made.slope = {}, made.cover = {};  // only heights are asked for again, where the camera stands
-    maps.map = std::make_shared<const TerrainMap>(std::move(made));
+    const double radius_km = context.scene.planet.ground_radius_km;
+    TerrainMaps maps = upload_maps(builder);
+    maps.distance = builder.graph.add_image("terrain distance");
     board.offer(maps);
 
-    const int cells =
-        context.settings.integer("terrain.cells") / 8 * 8;  // so that a ring's hole is whole cells, wherever it is
-    const auto mesh = std::make_shared<const Mesh>(make_mesh(device, cells));
     const auto seen = std::make_shared<ViewChange>();
+    graph::Step step = walking(maps, radius_km, "11_aerial_perspective/terrain.comp");
+    step.constants.push_back({"HAS_RELIEF", context.settings.choice("terrain.detail") == "on"});
+    step.bindings.push_back({"terrain_distance", maps.distance});
+    step.record = [seen, distance = maps.distance](const graph::Recorder& r) {
+      seen->note(r.frame);
+      r.dispatch_over(r.graph.image(distance).size);
+    };
     graph::Pass pass{.name = "terrain", .changed = [seen](const app::Frame& frame) { return seen->differs(frame); }};
-    pass.steps.push_back({.shader = "11_aerial_perspective/ring.vert",
-                          .constants = {{"CELLS", cells}},
-                          .raster = gpu::Raster{.depth = VK_FORMAT_D32_SFLOAT},
-                          .bindings = {{"height_map", maps.heights}},
-                          .accesses = {{maps.depth, kDepthWrite}},
-                          .record = [context, mesh, seen, maps](const graph::Recorder& r) {
-                            seen->note(r.frame);
-                            draw_mesh(context, *maps.map, *mesh, maps.depth, r);
-                          }});
+    pass.steps.push_back(std::move(step));
     builder.graph.add(std::move(pass));
-    const double radius_km = context.scene.planet.ground_radius_km;
     builder.adjust_camera = [map = maps.map, radius_km](CameraRays& camera, glm::dvec3& position_km) {
       lift_out_of_ground(*map, radius_km, camera, position_km);
     };
@@ -297,29 +204,25 @@ app::Effect terrain_shadows() {
   };
   effect.declare = [](app::Builder& builder, app::Board& board) {
     const app::Context& context = builder.context;
-    const TerrainMaps maps = board.get<TerrainMaps>("terrain");
-    const uint32_t side = static_cast<uint32_t>(context.settings.integer("terrain.shadow_size"));
-    const graph::Resource image =
-        builder.graph.add_image("terrain shadows", {.size = {side, side}, .format = VK_FORMAT_R32G32_SFLOAT});
-    board.offer(TerrainShadows{image});
-    const auto shadowed_from = std::make_shared<glm::dvec3>(0.0);
+    const TerrainMaps& maps = board.get<TerrainMaps>("terrain");
     const double radius_km = context.scene.planet.ground_radius_km;
+    const uint32_t side = static_cast<uint32_t>(context.settings.integer("terrain.shadow_size"));
+    const graph::Resource image = builder.graph.add_image("terrain shadows", {.size = {side, side}});
+    board.offer(TerrainShadows{image});
+
+    const auto shadowed_from = std::make_shared<glm::dvec3>(0.0);  // the sun the map was made for
+    graph::Step step = walking(maps, radius_km, "11_aerial_perspective/shadow.comp");
+    step.bindings.push_back({"shadow_map", image});
+    step.record = [context, shadowed_from, radius_km, side](const graph::Recorder& r) {
+      *shadowed_from = global_sun(r.frame, radius_km);
+      r.push(ShadowPush{{*shadowed_from, glm::radians(context.scene.sun.angular_radius_deg)}})
+          .dispatch_over({side, side});
+    };
     graph::Pass pass{.name = "terrain shadows"};
     pass.changed = [shadowed_from, radius_km](const app::Frame& frame) {
       return glm::length(global_sun(frame, radius_km) - *shadowed_from) > 1e-6;
     };
-    pass.steps.push_back({.shader = "11_aerial_perspective/shadow.comp",
-                          .constants = {{"STEPS", kShadowSteps}},
-                          .bindings = {{"height_map", maps.heights}, {"shadows", image}},
-                          .record = [context, maps, shadowed_from, radius_km, side](const graph::Recorder& r) {
-                            *shadowed_from = global_sun(r.frame, radius_km);
-                            const TerrainMap& map = *maps.map;
-                            const int size = static_cast<int>(side);
-                            r.push(ShadowPush{{*shadowed_from, glm::radians(context.scene.sun.angular_radius_deg)},
-                                              {map.extent_km, radius_km, map.extent_km / map.size, kShadowGrowth},
-                                              {size, size, 0, 0}});
-                            r.dispatch_over({side, side});
-                          }});
+    pass.steps.push_back(std::move(step));
     builder.graph.add(std::move(pass));
   };
   return effect;

@@ -1,8 +1,9 @@
-// The terrain as effects: its maps and the pass that draws its mesh into a depth image; and the pass that finds its
+// The terrain as effects: its maps and the pass that finds where each pixel's ray meets it; and the pass that finds its
 // shadows.
 //
-// Nothing but depth is drawn: from it the compose pass knows where a pixel lies, and all else is a look-up in the maps.
-// The mesh is rings of square cells around the camera, each ring with cells twice as large as the one inside it.
+// The height map is walked over as it is, with a tree of maxima to pass what a ray flies over: there is no mesh that
+// would be a little higher or lower than the map. From the distance the compose pass knows where a pixel lies, and all
+// else is a look-up in the maps.
 #pragma once
 
 #include <memory>
@@ -13,19 +14,18 @@
 
 namespace welkin {
 
-inline constexpr double kNear_km = 1e-4;  // of the reversed depth
+std::vector<Knob> terrain_knobs();  // terrain.detail, .edges, .shadow_size
 
-std::vector<Knob> terrain_knobs();  // terrain.cells, terrain.shadow_size
-
-// On the board where the scene has terrain: heights in km, slopes, cover, each a square map; and the depth of the
-// picture's pixels, reversed, 0 where there is none.
+// On the board where the scene has terrain: heights in km, the tree of their maxima, slopes, cover, each a square map;
+// and for the picture's pixels how far away the terrain is, km, as terrain.comp writes it.
 struct TerrainMaps {
-  graph::Resource heights, slopes, cover, depth;
+  graph::Resource heights, maxima, slopes, cover, distance;
+  int levels = 0;  // of the tree
   std::shared_ptr<const TerrainMap> map;
 };
 
-// On the board where terrain keeps the sun from itself: from which altitude on the sun is seen, and how wide the half
-// shadow is.
+// On the board where terrain keeps the sun from itself: from which altitude on the sun is seen, how wide the half
+// shadow is, and how high the ground.
 struct TerrainShadows {
   graph::Resource image;
 };

@@ -62,15 +62,22 @@ double ridges(double x, double y, uint32_t seed) {
 // [/noise]
 
 // [hills]
-// A plain around the scene's place, ranges further out, and level ground again at the map's edge, where the sphere
-// begins. Relative height; x, y in km.
+// The scene's place is the top of a knoll. Around it lies a valley with low hills, further out stand ranges, and at the
+// map's edge, where the sphere begins, the ground is level again. Relative height; x, y in km.
 double hill(double x, double y, double extent_km, uint32_t seed) {
-  const double from_centre = std::sqrt(x * x + y * y) / (0.5 * extent_km);
-  const double to_edge = std::max(std::abs(x), std::abs(y)) / (0.5 * extent_km);
-  const double ranges = smooth_step(0.13, 0.46, from_centre + 0.07 * noise(x / 9.0, y / 9.0, seed + 40));
-  const double rolling = 0.02 * (1.0 + noise(x / 3.7, y / 3.7, seed + 50) + 0.3 * noise(x / 1.1, y / 1.1, seed + 51));
+  const double from_place = std::sqrt(x * x + y * y), half = 0.5 * extent_km;
+  const double to_edge = std::max(std::abs(x), std::abs(y)) / half;
+  const double wide = noise(x / 9.0, y / 9.0, seed + 40);
+  const double ranges = smooth_step(0.1, 0.44, from_place / half + 0.07 * wide);
   const double crest = ridges(x / 15.0, y / 15.0, seed);
-  return (1.0 - smooth_step(0.8, 0.97, to_edge)) * (rolling + ranges * crest * crest * 1.7);
+  // Hills of some 200 m, in rows: their crests are ridges, too, but rounder ones.
+  const double row = 1.0 - std::abs(noise(x / 4.3 + 0.4 * wide, y / 4.3, seed + 50));
+  const double low = smooth_step(0.012, 0.09, from_place / half) *
+                     (0.075 * row * row * row + 0.02 * (1.0 + noise(x / 1.3, y / 1.3, seed + 51)));
+  const double knoll = 1.0 / (1.0 + from_place * from_place / 0.7);
+  const double bumps = 0.004 * noise(x / 0.61, y / 0.61, seed + 52) + 0.0016 * noise(x / 0.29, y / 0.29, seed + 53);
+  return (1.0 - smooth_step(0.8, 0.97, to_edge)) *
+         (0.01 + 0.055 * knoll * knoll + low + bumps + ranges * crest * crest * 1.7);
 }
 // [/hills]
 
@@ -156,6 +163,42 @@ TerrainMap make_terrain_map(const Terrain& terrain) {
   add_slopes_and_cover(map);
   return map;
 }
+
+void check_fits_planet(const Terrain& terrain, double ground_radius_km) {
+  if (terrain.extent_km > ground_radius_km)
+    fail("terrain.extent_km: a map of {} km on a planet of {} km radius; accepted is at most the radius",
+         terrain.extent_km, ground_radius_km);
+}
+
+// [height_maxima]
+HeightMaxima height_maxima(const TerrainMap& map) {
+  const int n = map.size;
+  HeightMaxima maxima{.levels = 1};
+  while ((8 << maxima.levels) < n + 1) ++maxima.levels;          // about eight nodes a side remain
+  const int side = ((n >> maxima.levels) + 1) << maxima.levels;  // in patches: whole nodes of every level
+  maxima.width = side / 2;
+  maxima.rows = side - (side >> maxima.levels);
+  maxima.highest_km.assign(static_cast<size_t>(maxima.width) * maxima.rows, 0.0f);
+  const auto row_of = [side](int level) { return side - (side >> (level - 1)); };
+  const auto at = [&](int level, int i, int j) -> float& {
+    return maxima.highest_km[static_cast<size_t>(row_of(level) + j) * maxima.width + i];
+  };
+  // Two patches a side have three samples a side: 2 i - 1 to 2 i + 1.
+  for (int j = 0; j < n + 2; ++j)
+    for (int i = 0; i < n + 2; ++i) {
+      const float height =
+          map.height_km[static_cast<size_t>(std::clamp(j - 1, 0, n - 1)) * n + std::clamp(i - 1, 0, n - 1)];
+      for (const int y : {(j - 1) / 2, j / 2})
+        for (const int x : {(i - 1) / 2, i / 2})
+          if (x < side / 2 && y < side / 2) at(1, x, y) = std::max(at(1, x, y), height);
+    }
+  for (int level = 2; level <= maxima.levels; ++level)
+    for (int j = 0; j < side >> (level - 1); ++j)
+      for (int i = 0; i < side >> (level - 1); ++i)
+        at(level, i / 2, j / 2) = std::max(at(level, i / 2, j / 2), at(level - 1, i, j));
+  return maxima;
+}
+// [/height_maxima]
 
 double height_at(const TerrainMap& map, double x_km, double y_km) {
   if (std::max(std::abs(x_km), std::abs(y_km)) > 0.5 * map.extent_km) return 0.0;

@@ -27,6 +27,21 @@ struct TerrainMap {
 // Throws Error: a file that is not a square 16-bit grayscale PNG of 2 to 4096 samples a side.
 TerrainMap make_terrain_map(const Terrain& terrain);
 
+// Throws Error if the map is wider than the planet's radius: towards the planet's edge, seen along the vertical of the
+// scene's place, a place of the map is no longer one of the ground.
+void check_fits_planet(const Terrain& terrain, double ground_radius_km);
+
+// Maxima over squares of patches, for walks over the map (shaders/11_aerial_perspective/height_field.glsl). Patch (i,
+// j) is the square between samples i - 1 and i, j - 1 and j, the outer ones beyond the outer samples and level: size +
+// 1 a side. A node of level k holds the highest corner of 2^k x 2^k patches. Levels 1, 2, ... lie below each other in
+// one picture `width` wide, level k from row 2 width - (2 width >> (k - 1)) on.
+struct HeightMaxima {
+  int levels = 0;
+  int width = 0, rows = 0;
+  std::vector<float> highest_km;  // width * rows
+};
+HeightMaxima height_maxima(const TerrainMap& map);
+
 // Height at (x, y), bilinear between samples, the edge's value beyond; 0 outside of the square.
 double height_at(const TerrainMap& map, double x_km, double y_km);
 

@@ -32,12 +32,10 @@ app::Effect first_surfaces() {
     const std::optional<double>& signs = context.scene.terrain->signs_azimuth_deg;
     graph::Pass pass{.name = "surfaces", .changed = [](const app::Frame&) { return true; }};  // the albedo is a knob
     pass.steps.push_back({.shader = "11_aerial_perspective/surfaces.comp",
-                          .constants = {{"HAS_SIGNS", signs.has_value()},
-                                        {"SIGNS_AZIMUTH", static_cast<float>(signs ? glm::radians(*signs) : 0.0)},
-                                        {"NEAR_KM", static_cast<float>(kNear_km)},
+                          .constants = {{"SIGNS_AZIMUTH", static_cast<float>(signs ? glm::radians(*signs) : -1e3)},
                                         {"EXTENT_KM", static_cast<float>(context.scene.terrain->extent_km)},
                                         {"RADIUS_KM", static_cast<float>(context.scene.planet.ground_radius_km)}},
-                          .bindings = {{"depth_map", maps.depth, {.filter = VK_FILTER_NEAREST}},
+                          .bindings = {{"terrain_distance", maps.distance},
                                        {"slope_map", maps.slopes},
                                        {"cover_map", maps.cover},
                                        {"normals", images.normals},

@@ -104,7 +104,6 @@ bool Composition::stale() {
   return false;
 }
 
-// [rebuild]
 void Composition::rebuild() {
   try {
     follow();
@@ -114,6 +113,7 @@ void Composition::rebuild() {
   }
 }
 
+// [rebuild]
 void Composition::follow() {
   scene_ = context_.scene, values_ = context_.settings.values();
   bool anything = false;

@@ -18,24 +18,25 @@ vec3 sun_through_air(Atmosphere air, float altitude_km, float mu_sun) {
 }
 
 // Air between the eye and a point: the light it adds, and its optical depth.
-struct Veil {
+struct AirSegment {
   vec3 radiance;
   vec3 depth;
 };
 
-Veil no_veil() {
-  Veil veil;
-  veil.radiance = vec3(0.0, 0.0, 0.0);
-  veil.depth = vec3(0.0, 0.0, 0.0);
-  return veil;
+AirSegment no_air() {
+  AirSegment segment;
+  segment.radiance = vec3(0.0, 0.0, 0.0);
+  segment.depth = vec3(0.0, 0.0, 0.0);
+  return segment;
 }
 
 // [air_segment]
 // The air from t_a to t_b, behind what `before` holds. One node in the middle, or pairs of Gauss-Legendre nodes; each is a
 // piece of constant source and extinction. Pieces tile the segment: nothing is left out at its end, wherever that is.
-Veil behind(MethodAir method, AirRay ray, ScatteringTowardsEye scattering, Veil before, float t_a, float t_b, int samples) {
+AirSegment append_segment(MethodAir method, AirRay ray, ScatteringTowardsEye scattering, AirSegment before, float t_a, float t_b,
+                          int samples) {
   Atmosphere air = method.air;
-  Veil veil = before;
+  AirSegment segment = before;
   float dt = (t_b - t_a) / float(samples);
   for (int i = 0; i < samples; i++) {
     float offset = samples == 1 ? 0.5 : (i % 2 == 0 ? 0.42264973081037424 : 0.57735026918962576);
@@ -52,11 +53,11 @@ Veil behind(MethodAir method, AirRay ray, ScatteringTowardsEye scattering, Veil 
                     sun_behind_terrain(point.t_km, point.altitude_km);
       if (HIGHER_ORDERS) source += source_at(air, ray, point, density, method.chi);
       vec3 mean = vec3(mean_transmittance(tau.x), mean_transmittance(tau.y), mean_transmittance(tau.z));
-      veil.radiance += exp(veil.depth * -1.0) * source * mean * dt;
-      veil.depth += tau;
+      segment.radiance += exp(segment.depth * -1.0) * source * mean * dt;
+      segment.depth += tau;
     }
   }
-  return veil;
+  return segment;
 }
 // [/air_segment]
 
@@ -71,10 +72,10 @@ float slices_before(float t_km, float slices, float farthest_km, float power) {
 // [froxel]
 // What a froxel keeps of the air up to its far end, at distance d: not L and T, which change many times over from one slice to
 // the next, but what the air would be if it were homogeneous up to there,
-//   extinction = tau / d,      glow = L / (1 - T),      so that      T = exp(-extinction d),      L = glow (1 - T).
+//   extinction = tau / d,   in_scattering = L / (1 - T),   so that   T = exp(-extinction d),   L = in_scattering (1 - T).
 // Both hardly change with d, and tend to the air's own at the eye. 1 - T is tau phi(tau), phi the mean transmittance.
 struct Froxel {
-  vec3 glow;
+  vec3 in_scattering;
   vec3 extinction;  // per km
 };
 
@@ -82,17 +83,17 @@ vec3 opacity(vec3 tau) {
   return vec3(tau.x * mean_transmittance(tau.x), tau.y * mean_transmittance(tau.y), tau.z * mean_transmittance(tau.z));
 }
 
-Froxel froxel_of(Veil veil, float d_km) {
+Froxel froxel_of(AirSegment segment, float d_km) {
   Froxel froxel;
-  froxel.glow = veil.radiance / max(opacity(veil.depth), vec3(1.0e-30, 1.0e-30, 1.0e-30));
-  froxel.extinction = veil.depth / d_km;
+  froxel.in_scattering = segment.radiance / max(opacity(segment.depth), vec3(1.0e-30, 1.0e-30, 1.0e-30));
+  froxel.extinction = segment.depth / d_km;
   return froxel;
 }
 
 RayLight light_before(Froxel froxel, float d_km) {
   vec3 tau = froxel.extinction * d_km;
   RayLight light;
-  light.radiance = froxel.glow * opacity(tau);
+  light.radiance = froxel.in_scattering * opacity(tau);
   light.transmittance = exp(tau * -1.0);
   return light;
 }
@@ -101,16 +102,16 @@ RayLight light_before(Froxel froxel, float d_km) {
 // [march_to]
 // All the air up to distance d: the same slices, laid so that the last ends there.
 RayLight march_to(MethodAir method, AirRay ray, ScatteringTowardsEye scattering, float d_km, int slices, int samples, float power) {
-  Veil veil = no_veil();
+  AirSegment segment = no_air();
   float t_a = 0.0;
   for (int k = 0; k < slices; k++) {
     float t_b = slice_end(float(k + 1), float(slices), d_km, power);
-    veil = behind(method, ray, scattering, veil, t_a, t_b, samples);
+    segment = append_segment(method, ray, scattering, segment, t_a, t_b, samples);
     t_a = t_b;
   }
   RayLight light;
-  light.radiance = veil.radiance;
-  light.transmittance = exp(veil.depth * -1.0);
+  light.radiance = segment.radiance;
+  light.transmittance = exp(segment.depth * -1.0);
   return light;
 }
 // [/march_to]

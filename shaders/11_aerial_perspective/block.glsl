@@ -31,10 +31,21 @@ vec3 ray_start_km;
 vec3 ray_direction;
 
 // [sun_behind_terrain]
-// The shadow map says for every place from which altitude on the sun is seen, and how wide the half shadow is.
+// The shadow map says for every place from which altitude on the sun is seen, how wide the half shadow is, and how high the
+// ground. The ground itself asks how far that altitude is above the ground there: heights of one map, filtered in one way. With
+// its own altitude, which is known finer, it would be in shadow wherever it lies lower than between two texels.
+vec3 shadow_at(vec2 place_km) { return textureLod(shadow_map, map_uv(place_km, extent_km), 0.0).rgb; }
+
 float sun_over(vec2 place_km, float altitude_km) {
-  const vec2 shadow = textureLod(shadow_map, map_uv(place_km, extent_km), 0.0).rg;
+  if (!HAS_SHADOWS) return 1.0;
+  const vec3 shadow = shadow_at(place_km);
   return disc_above((altitude_km - shadow.x) / shadow.y);
+}
+
+float sun_on_ground(vec2 place_km) {
+  if (!HAS_SHADOWS) return 1.0;
+  const vec3 shadow = shadow_at(place_km);
+  return disc_above((shadow.z - shadow.x) / shadow.y);
 }
 
 float sun_behind_terrain(float t_km, float altitude_km) {

@@ -8,31 +8,31 @@ layout(local_size_x = 64) in;
 layout(constant_id = 22) const int THREADS = 1;  // that share a direction: 1 ... 64, a power of two
 const int RAYS = 64 / THREADS;                   // directions of a workgroup
 
-layout(binding = 3, rgba32f) uniform writeonly image3D glows;        // w: extinction of the mean
+layout(binding = 3, rgba32f) uniform writeonly image3D froxel_in_scattering;  // w: extinction of the mean
 #if PER_CHANNEL
-layout(binding = 4, rgba32f) uniform writeonly image3D extinctions;  // per channel
+layout(binding = 4, rgba32f) uniform writeonly image3D froxel_extinction;
 #endif
 
 shared vec3 shared_depth[2][THREADS][RAYS];  // of one round of slices, and of the next
 shared vec3 shared_light[2][THREADS][RAYS];
 
-void store(ivec3 texel, Veil veil, float d_km, vec3 sun) {
-  const vec3 through = exp(-veil.depth);
+void store(ivec3 texel, AirSegment segment, float d_km, vec3 sun) {
+  const vec3 through = exp(-segment.depth);
   const float mean = -log(max((through.r + through.g + through.b) / 3.0, 1.0e-37));
   // The mean's own depth, where 1 - T still has digits; below that the depths' mean is the same.
-  const float mean_depth = mean < 1.0e-2 ? (veil.depth.r + veil.depth.g + veil.depth.b) / 3.0 : mean;
-  if (!HAS_COLOUR) veil.depth = vec3(mean_depth);
-  const Froxel froxel = froxel_of(veil, d_km);
-  imageStore(glows, texel, vec4(froxel.glow * sun, mean_depth / d_km));
+  const float mean_depth = mean < 1.0e-2 ? (segment.depth.r + segment.depth.g + segment.depth.b) / 3.0 : mean;
+  if (!HAS_COLOUR) segment.depth = vec3(mean_depth);
+  const Froxel froxel = froxel_of(segment, d_km);
+  imageStore(froxel_in_scattering, texel, vec4(froxel.in_scattering * sun, mean_depth / d_km));
 #if PER_CHANNEL
-  imageStore(extinctions, texel, vec4(froxel.extinction, 0.0));
+  imageStore(froxel_extinction, texel, vec4(froxel.extinction, 0.0));
 #endif
 }
 
 // [froxels]
 void main() {
   const int part = int(gl_LocalInvocationID.x) / RAYS, ray = int(gl_LocalInvocationID.x) % RAYS;
-  const ivec2 count = imageSize(glows).xy;
+  const ivec2 count = imageSize(froxel_in_scattering).xy;
   const int column = int(gl_WorkGroupID.x) * RAYS + ray;
   const ivec2 texel = ivec2(column % count.x, column / count.x);
   const Atmosphere air = atmosphere;
@@ -42,31 +42,31 @@ void main() {
   const vec3 view = normalize(frame.camera.forward + frame.camera.right * place.x - frame.camera.up * place.y);
   const ClippedRay in_air = clipped_ray(view, frame.camera.altitude_km);
   const ScatteringTowardsEye scattering = scattering_along(air, view, frame.camera.sun);
-  Veil before = no_veil();  // all slices of the rounds before
+  AirSegment before = no_air();  // all slices of the rounds before
   for (int round = 0; round * THREADS < SLICES; ++round) {
     const int k = min(round * THREADS + part, SLICES - 1);
     const bool own = round * THREADS + part < SLICES && texel.y < count.y;
     const float t_a = slice_end(float(k), float(SLICES), farthest_km, POWER), t_b = slice_end(float(k + 1), float(SLICES), farthest_km, POWER);
     if (THREADS == 1) {
-      before = behind(method, in_air.air, scattering, before, t_a, t_b, SAMPLES);
+      before = append_segment(method, in_air.air, scattering, before, t_a, t_b, SAMPLES);
       if (own) store(ivec3(texel, k), before, t_b, air.solar_irradiance);
       continue;
     }
-    Veil slice = no_veil();
-    if (own) slice = behind(method, in_air.air, scattering, slice, t_a, t_b, SAMPLES);
+    AirSegment slice = no_air();
+    if (own) slice = append_segment(method, in_air.air, scattering, slice, t_a, t_b, SAMPLES);
     shared_depth[round % 2][part][ray] = slice.depth;
     barrier();
     vec3 depth = before.depth;
     for (int i = 0; i < part; ++i) depth += shared_depth[round % 2][i][ray];
     shared_light[round % 2][part][ray] = exp(-depth) * slice.radiance;
     barrier();
-    Veil veil = Veil(before.radiance, depth + slice.depth);
+    AirSegment segment = AirSegment(before.radiance, depth + slice.depth);
     for (int i = 0; i < THREADS; ++i) {
-      if (i <= part) veil.radiance += shared_light[round % 2][i][ray];
+      if (i <= part) segment.radiance += shared_light[round % 2][i][ray];
       before.radiance += shared_light[round % 2][i][ray];
       before.depth += shared_depth[round % 2][i][ray];
     }
-    if (own) store(ivec3(texel, k), veil, t_b, air.solar_irradiance);
+    if (own) store(ivec3(texel, k), segment, t_b, air.solar_irradiance);
   }
 }
 // [/froxels]

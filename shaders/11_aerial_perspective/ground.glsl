@@ -2,6 +2,7 @@
 #ifndef WELKIN_GROUND_GLSL
 #define WELKIN_GROUND_GLSL
 
+#include "11_aerial_perspective/detail.glsl"
 #include "11_aerial_perspective/terrain.glsl"
 
 struct Ground {
@@ -9,60 +10,36 @@ struct Ground {
   vec3 normal;
 };
 
-// Numbers from whole numbers, the same on every device.
-float lattice(int i, int j) {
-  uint h = uint(i) * 0x9E3779B1u ^ uint(j) * 0x85EBCA77u;
-  h ^= h >> 15;
-  h *= 0x2C1B3C6Du;
-  h ^= h >> 12;
-  h *= 0x297A2D39u;
-  return float(h >> 8) * (1.0 / 16777216.0);
-}
-
-// Value noise, 0 ... 1, and its derivatives: (value, d/dx, d/dy).
-vec3 value_noise(vec2 at) {
-  vec2 cell = floor(at);
-  int i = int(cell.x);
-  int j = int(cell.y);
-  float u = at.x - cell.x;
-  float v = at.y - cell.y;
-  float a = u * u * (3.0 - 2.0 * u);
-  float b = v * v * (3.0 - 2.0 * v);
-  float c00 = lattice(i, j);
-  float c10 = lattice(i + 1, j);
-  float c01 = lattice(i, j + 1);
-  float c11 = lattice(i + 1, j + 1);
-  float low = c00 + a * (c10 - c00);
-  float high = c01 + a * (c11 - c01);
-  float across = (c10 - c00) + b * ((c11 - c01) - (c10 - c00));
-  return vec3(low + b * (high - low), 6.0 * u * (1.0 - u) * across, 6.0 * v * (1.0 - v) * (high - low));
-}
-
 // [ground]
-// Albedo and normal. cover: share of grass, rock, snow and bare ground. Between the map's samples, 125 m apart, noise of
-// five scales stands in for what the map does not hold; each scale is left out where a pixel (pixel_km at that distance)
-// covers its waves, so that far slopes do not sparkle.
-Ground ground_at(vec2 slope, vec4 cover, vec3 bare, vec2 place_km, vec3 up, float pixel_km) {
-  float tone = 0.0;
-  vec2 tilt = slope;
-  float wave_km = 0.16;
-  for (int octave = 0; octave < 5; octave++) {
-    float kept = clamp(1.5 - 3.0 * pixel_km / wave_km, 0.0, 1.0);
-    if (kept > 0.0) {
-      vec3 rough = value_noise(place_km / wave_km + vec2(17.0 * float(octave), 5.0));
-      tone += kept * (rough.x - 0.5);
-      float steep = 0.05 + 0.12 * cover.y;
-      tilt += vec2(rough.y, rough.z) * (kept * steep);
-    }
-    wave_km *= 0.23;
-  }
+// A share of cover as a map with borders: where the noise is above what the share asks for. Blurred where detail is.
+float bordered(float share, float rough, float sharp) {
+  float blur = 0.5 - 0.42 * sharp;
+  return smoothstep(0.5 - blur, 0.5 + blur, share + rough);
+}
+
+// Albedo and normal. cover: share of grass, rock, snow and bare ground; bare: the planet's albedo.
+Ground ground_at(vec2 slope, vec4 cover, vec3 bare, vec2 place_km, vec3 up, float footprint_km) {
+  Detail detail = detail_at(place_km, footprint_km);
   float total = max(cover.x + cover.y + cover.z + cover.w, 1.0e-6);
-  vec3 grass = vec3(0.085, 0.110, 0.042);
-  vec3 rock = vec3(0.150, 0.135, 0.120);
-  vec3 snow = vec3(0.80, 0.82, 0.85);
+  float rough = detail.patches + 0.5 * detail.grain + 0.25 * detail.blades;
+  float rock = bordered(cover.y / total, 0.8 * rough, detail.sharp);
+  float snow = bordered(cover.z / total, 0.8 * rough, detail.sharp);
+  float soil = cover.w / total;
+  // Meadow: green in the hollows, straw where it is dry, dark shrubs, and stones that look out of it.
+  float dry = smoothstep(-0.28, 0.28, detail.patches + 0.6 * detail.grain + 0.5 * detail.blades);
+  float shrub = smoothstep(0.06, 0.06 + 0.3 - 0.2 * detail.sharp, -0.5 * detail.patches - 0.8 * detail.grain - 0.3 * detail.blades);
+  float stone = smoothstep(0.30, 0.40, detail.grain + 0.35 * detail.blades - 0.5 * detail.patches);
+  vec3 grass = mix(mix(vec3(0.066, 0.086, 0.030), vec3(0.150, 0.126, 0.062), dry), vec3(0.036, 0.050, 0.022), shrub);
+  grass *= clamp(1.0 + 1.6 * detail.blades + 0.5 * detail.grain, 0.35, 1.6);
+  vec3 limestone = vec3(0.205, 0.190, 0.168) * clamp(1.0 + 1.2 * detail.blades, 0.5, 1.3);
+  grass = mix(grass, limestone, stone * (1.0 - shrub));
+  vec3 cliff = mix(vec3(0.120, 0.108, 0.096), vec3(0.235, 0.217, 0.190), smoothstep(-0.3, 0.3, rough));
+  cliff *= clamp(1.0 + 0.8 * detail.grain + detail.blades, 0.5, 1.4);
+  vec3 mixed = mix(mix(grass, bare, soil), cliff, rock);
+  mixed = mix(mixed, vec3(0.80, 0.82, 0.85) * (1.0 + 0.1 * detail.grain), snow);
   Ground ground;
-  vec3 mixed = (grass * cover.x + rock * cover.y + snow * cover.z + bare * cover.w) / total;
-  ground.albedo = mixed * clamp(1.0 + tone * (0.5 - 0.4 * cover.z), 0.3, 1.15);
+  ground.albedo = clamp(mixed, 0.0, 0.95);
+  vec2 tilt = slope + detail.tilt * (kSteepness * mix(1.0, 1.6, rock) * (1.0 - 0.6 * snow));
   // East and north of the map, laid on the sphere.
   vec3 east = normalize(vec3(up.z, 0.0, -up.x));
   vec3 north = cross(up, east);

@@ -15,10 +15,11 @@ float sign_distance_km(int k) {
   return decade * (step == 0 ? 1.0 : (step == 1 ? 2.0 : 5.0));
 }
 
-// Where a ray meets a sign: t_km < 0 if it does not. paint: reflectance.
+// Where a ray meets a sign: t_km < 0 if it does not. paint: reflectance; share: of the pixel that it covers.
 struct SignHit {
   float t_km;
   float paint;
+  float share;
   vec3 normal;
 };
 
@@ -51,9 +52,15 @@ float board_paint(int k, float u, float v) {
   return ink ? 0.02 : 0.85;
 }
 
+// Share of an interval of width w about x that lies between low and high.
+float covered(float x, float low, float high, float w) {
+  return clamp((min(x + 0.5 * w, high) - max(x - 0.5 * w, low)) / w, 0.0, 1.0);
+}
+
 // [sign]
-SignHit meet_sign(int k, float ground_radius_km, float azimuth_rad, vec3 start_km, vec3 direction) {
+SignHit meet_sign(int k, float ground_radius_km, float azimuth_rad, vec3 start_km, vec3 direction, float pixel) {
   SignHit hit;
+  hit.share = 0.0;
   hit.t_km = -1.0;
   hit.paint = 0.0;
   float d = sign_distance_km(k);
@@ -70,14 +77,20 @@ SignHit meet_sign(int k, float ground_radius_km, float azimuth_rad, vec3 start_k
   float u = dot(at, side) / d;
   float v = dot(at, up) / d - 0.5 * d / ground_radius_km;  // the ground there is that much lower
   if (t <= 0.0) return hit;
-  if (abs(u) < 0.05 && v > 0.15 && v < 0.21) {
-    hit.t_km = t;
-    hit.paint = board_paint(k, u / 0.05, (v - 0.15) / 0.06);
+  // Of board and post as much as is in a pixel's square; what is painted there, by nine points of it.
+  float w = t * pixel / d;
+  float board = covered(u, -0.05, 0.05, w) * covered(v, 0.15, 0.21, w);
+  float post = dot(at, up) > 0.0 ? covered(u, -0.0015, 0.0015, w) * covered(v, -1.0, 0.15, w) : 0.0;
+  if (board + post <= 0.0) return hit;
+  float paint = 0.0;
+  for (int i = 0; i < 9; i++) {
+    float x = clamp(u + w * (float(i % 3) - 1.0) / 3.0, -0.05, 0.05);
+    float y = clamp(v + w * (float(i / 3) - 1.0) / 3.0, 0.15, 0.21);
+    if (board > 0.0) paint += board_paint(k, x / 0.05, (y - 0.15) / 0.06) / 9.0;
   }
-  if (abs(u) < 0.0015 && v <= 0.15 && dot(at, up) > 0.0) {
-    hit.t_km = t;
-    hit.paint = 0.3;
-  }
+  hit.t_km = t;
+  hit.share = min(board + post, 1.0);
+  hit.paint = (board * paint + post * 0.3) / (board + post);
   return hit;
 }
 // [/sign]

@@ -1,20 +1,16 @@
-// What each pixel's ray meets first, for chapter 07's path tracer: distance, normal and albedo of terrain and signs, found as
-// compose.glsl finds them. km; the global frame, but normals in that of the eye.
+// What each pixel's ray meets first, for chapter 07's path tracer: distance, normal and albedo of terrain and signs, as
+// compose.glsl finds them: by the same function. km; the global frame, but normals in that of the eye.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "interop/view_block.glsl"
 #include "03_planet_and_rays/camera.glsl"
-#include "11_aerial_perspective/ground.glsl"
-#include "11_aerial_perspective/signs.glsl"
 
-layout(constant_id = 0) const bool HAS_SIGNS = true;
-layout(constant_id = 1) const float SIGNS_AZIMUTH = 0.0;  // rad
-layout(constant_id = 2) const float NEAR_KM = 1.0e-4;
-layout(constant_id = 3) const float EXTENT_KM = 128.0;
-layout(constant_id = 4) const float RADIUS_KM = 6360.0;
+layout(constant_id = 0) const float SIGNS_AZIMUTH = -1.0e3;  // rad, below -100 without
+layout(constant_id = 1) const float EXTENT_KM = 128.0;
+layout(constant_id = 2) const float RADIUS_KM = 6360.0;
 
-layout(binding = 0) uniform sampler2D depth_map;
+layout(binding = 0, rgba32f) uniform readonly image2D terrain_distance;
 layout(binding = 1) uniform sampler2D slope_map;
 layout(binding = 2) uniform sampler2D cover_map;
 layout(binding = 3, rgba32f) uniform writeonly image2D normals;  // w: distance, 0: nothing is met
@@ -23,6 +19,10 @@ layout(push_constant) uniform Push {
   vec4 bare_albedo;  // rgb: of the bare ground
 };
 
+vec2 slope_at(vec2 uv) { return textureLod(slope_map, uv, 0.0).rg; }
+vec4 cover_at(vec2 uv) { return textureLod(cover_map, uv, 0.0); }
+#include "11_aerial_perspective/surface.glsl"
+
 // [surfaces]
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -30,31 +30,17 @@ void main() {
   const vec3 view = camera_direction(frame.camera, pixel);
   const vec3 above = cross(frame.east, frame.north);
   const vec3 direction = frame.east * view.x + frame.north * view.y + above * view.z;
-
-  const float depth = texelFetch(depth_map, pixel, 0).r;
-  bool seen = depth > 0.0;
-  float t_km = seen ? distance_from_depth(depth, NEAR_KM, dot(view, normalize(frame.camera.forward))) : 1.0e9;
-  float paint = -1.0;
-  vec3 normal = vec3(0.0);
-  if (HAS_SIGNS) {
-    for (int k = 0; k < kSigns; ++k) {
-      const SignHit hit = meet_sign(k, RADIUS_KM, SIGNS_AZIMUTH, frame.position_km, direction);
-      if (hit.t_km < 0.0 || hit.t_km >= t_km) continue;
-      t_km = hit.t_km, paint = hit.paint, normal = hit.normal, seen = true;
-    }
+  const float pixel_rad = 2.0 * length(frame.camera.up) / float(frame.camera.size.y);
+  const vec4 terrain = imageLoad(terrain_distance, pixel);
+  bool seen = terrain.x > 0.0;
+  Surface surface;
+  if (seen) surface = terrain_surface(RADIUS_KM, EXTENT_KM, bare_albedo.rgb, frame.position_km, direction, terrain.x, pixel_rad);
+  if (SIGNS_AZIMUTH > -100.0) {
+    const SignSeen sign = sign_before(RADIUS_KM, frame.position_km, direction, seen ? terrain.x : 1.0e9, SIGNS_AZIMUTH, pixel_rad);
+    if (sign.share > 0.5) surface = sign.surface, seen = true;  // a path meets one surface or the other
   }
-  vec3 albedo = vec3(paint);
-  if (seen && paint < 0.0) {
-    const vec2 place = place_below(RADIUS_KM, frame.position_km + direction * t_km);
-    const vec2 uv = map_uv(place, EXTENT_KM);
-    const vec3 bare = bare_albedo.rgb;
-    const Ground ground = ground_at(textureLod(slope_map, uv, 0.0).rg, textureLod(cover_map, uv, 0.0), bare, place, up_at(RADIUS_KM, place), t_km / float(frame.camera.size.y));
-    albedo = ground.albedo, normal = ground.normal;
-  } else if (dot(normal, direction) > 0.0) {
-    normal = -normal;
-  }
-  const vec3 local = vec3(dot(normal, frame.east), dot(normal, frame.north), dot(normal, above));
-  imageStore(normals, pixel, seen ? vec4(local, t_km) : vec4(0.0));
-  imageStore(albedos, pixel, vec4(albedo, 1.0));
+  const vec3 local = vec3(dot(surface.normal, frame.east), dot(surface.normal, frame.north), dot(surface.normal, above));
+  imageStore(normals, pixel, seen ? vec4(local, surface.t_km) : vec4(0.0));
+  imageStore(albedos, pixel, seen ? vec4(surface.albedo, 1.0) : vec4(0.0));
 }
 // [/surfaces]

@@ -1,4 +1,4 @@
-// Where a height map lies on the planet, the rings of the mesh around the camera, and the sun behind a ridge. Pure functions.
+// Where a height map lies on the planet, and the sun behind a ridge. Pure functions.
 //
 // km. Global frame: origin on the ground at the scene's place, x east, y north, z up there; the planet's centre is at
 // (0, 0, -R). A place of the map is where the vertical through a point pierces the sphere, seen along z: (x, y).
@@ -35,25 +35,6 @@ vec3 up_at(float ground_radius_km, vec2 place_km) {
 
 // Texture coordinates of a place; row 0 of the map is north.
 vec2 map_uv(vec2 place_km, float extent_km) { return vec2(place_km.x / extent_km + 0.5, 0.5 - place_km.y / extent_km); }
-
-// [ring_vertex]
-// Place of a vertex of a ring: (i, j) counts cells of `cell_km` from the ring's south-west corner, origin_km is its middle,
-// an even number of cells from the map's. Towards the ring's rim odd vertices slide to their even neighbours, until they
-// lie where the next, coarser ring has its own: no gap between the two. Strugar 2009, "CDLOD".
-vec2 ring_vertex(float i, float j, float cells, vec2 origin_km, float cell_km, vec2 camera_place_km) {
-  vec2 place = vec2(origin_km.x + (i - 0.5 * cells) * cell_km, origin_km.y + (j - 0.5 * cells) * cell_km);
-  float away = max(abs(place.x - camera_place_km.x), abs(place.y - camera_place_km.y)) / cell_km;
-  float slide = clamp((away - 0.375 * cells) / (0.125 * cells - 2.0), 0.0, 1.0);
-  vec2 odd = vec2(mod(i, 2.0), mod(j, 2.0));
-  return vec2(place.x - odd.x * slide * cell_km, place.y - odd.y * slide * cell_km);
-}
-// [/ring_vertex]
-
-// [distance]
-// Reversed depth with the far plane at infinity: depth = near / z, z along the look direction, 0 where nothing was drawn.
-// In float32 a depth has 24 bits at every distance: z is known to 6e-8 of itself, 6 mm at 100 km.
-float distance_from_depth(float depth, float near_km, float cosine_to_axis) { return near_km / (depth * cosine_to_axis); }
-// [/distance]
 
 // [disc_above]
 // Share of the sun's disc above a straight edge; `above` is how far its centre is above, in radii of the disc.

@@ -62,7 +62,7 @@ struct Framed {
     scene.terrain->size = 64;
     for (const char* quick :
          {"multiple_scattering.iterations=3", "multiple_scattering.directions=16", "transmittance.height=16",
-          "terrain.cells=32", "terrain.shadow_size=64", "froxels.size=8", "froxels.slices=8"}) {
+          "terrain.shadow_size=64", "froxels.size=8", "froxels.slices=8"}) {
       const auto [name, value] = split_assignment(quick);
       if (settings.has(name)) settings.set(name, value);
     }

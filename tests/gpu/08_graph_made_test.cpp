@@ -192,7 +192,7 @@ TEST_CASE("08 hard: two hundred frames of resizes, dropped scenes and effects on
   Settings settings(app::knobs_of(effects, 11));
   for (const char* quick :
        {"multiple_scattering.iterations=3", "multiple_scattering.directions=16", "transmittance.height=16",
-        "terrain.cells=32", "terrain.shadow_size=64", "froxels.size=8", "froxels.slices=8", "aerial.march_slices=8"}) {
+        "terrain.shadow_size=64", "froxels.size=8", "froxels.slices=8", "aerial.march_slices=8"}) {
     const auto [name, value] = split_assignment(quick);
     settings.set(name, value);
   }
@@ -204,7 +204,7 @@ TEST_CASE("08 hard: two hundred frames of resizes, dropped scenes and effects on
       std::make_unique<app::Renderer>(context, chapter, program, VkExtent2D{24, 16});
   const std::vector<std::pair<const char*, std::vector<const char*>>> switches{
       {"orders", {"0", "1"}},
-      
+
       {"aerial.method", {"froxels", "march"}},
       {"tables", {"changed", "all"}},
       {"sky_view.method", {"auto", "table", "march"}},
@@ -237,14 +237,18 @@ TEST_CASE("08 hard: two hundred frames of resizes, dropped scenes and effects on
         else
           scene.sun.disc = !scene.sun.disc;
         break;
-      case 4: scene.post.manual = !scene.post.manual; altitude_km = random.next() % 3 == 0 ? 400.0 : 0.5; break;
+      case 4:
+        scene.post.manual = !scene.post.manual;
+        altitude_km = random.next() % 3 == 0 ? 400.0 : 0.5;
+        break;
       default: {
         const auto& [knob, values] = switches[random.next() % switches.size()];
         settings.set(knob, values[random.next() % values.size()]);
       }
     }
-    renderer->draw(app::pose_of({.altitude_km = altitude_km, .azimuth_deg = double(frame), .elevation_deg = -5.0}, 6360.0), 0.0,
-                   1, frame);
+    renderer->draw(
+        app::pose_of({.altitude_km = altitude_km, .azimuth_deg = double(frame), .elevation_deg = -5.0}, 6360.0), 0.0, 1,
+        frame);
     if (frame % 10 == 9)
       for (const glm::vec4& pixel : renderer->picture().pixels) REQUIRE(std::isfinite(pixel.r + pixel.g + pixel.b));
     REQUIRE(instance.validation_messages().empty());

@@ -17,7 +17,7 @@
 
 namespace welkin::test {
 
-enum class AirPart { march, first_slice, all_orders, to_the_end, planet, ring, scalars, surface, ground, sign };
+enum class AirPart { march, first_slice, all_orders, to_the_end, planet, hit, scalars, surface, ground, sign, shadow };
 
 // a, b, c as tests/gpu/shaders/11_parts.comp reads them; c[3] is set from `part`.
 struct AirItem {

@@ -41,11 +41,13 @@ TEST_CASE("terrain from noise is the same bits every time, level at the rim and 
                    other = make_terrain_map({.size = 256, .seed = 2});
   CHECK(map.height_km == again.height_km);
   CHECK(map.height_km != other.height_km);
-  CHECK(bits_of(map.height_km) == 0x62e1f7b36a19a4a7ull);
+  CHECK(bits_of(map.height_km) == 0x41f7140c1dc916c1ull);
   CHECK(map.highest_km == Approx(3.0).epsilon(1e-6));
   for (int i = 0; i < 256; ++i) CHECK(map.height_km[static_cast<size_t>(i)] == 0.0f);
   CHECK(*std::min_element(map.height_km.begin(), map.height_km.end()) >= 0.0f);
-  CHECK(height_at(map, 0.0, 0.0) < 0.2);  // a plain where the views stand
+  // The views stand on a knoll: a kilometre away on all sides the ground is lower.
+  for (const auto& [x, y] : {std::pair{1.5, 0.0}, {-1.5, 0.0}, {0.0, 1.5}, {0.0, -1.5}})
+    CHECK(height_at(map, x, y) < height_at(map, 0.0, 0.0) - 0.04);
   for (const auto& shares : map.cover) CHECK(std::abs(shares[0] + shares[1] + shares[2] + shares[3] - 255) <= 2);
 }
 
@@ -93,6 +95,13 @@ TEST_CASE("height maps that are none are refused in one line") {
   CHECK(refusal({.height_map = named("cut.png")}) != "accepted");
 }
 
+TEST_CASE("a map wider than its planet is refused") {
+  CHECK_NOTHROW(check_fits_planet({.extent_km = 1737.0}, 1737.0));
+  CHECK_THROWS_WITH(
+      check_fits_planet({.extent_km = 2000.0}, 1737.0),
+      "terrain.extent_km: a map of 2000 km on a planet of 1737 km radius; accepted is at most the radius");
+}
+
 TEST_CASE("a place of the map and the point above it are inverse, to millimetres") {
   std::vector<AirItem> items;
   Random random(3);
@@ -116,40 +125,12 @@ TEST_CASE("a place of the map and the point above it are inverse, to millimetres
   CHECK(altitude_km < 2e-5);
 }
 
-TEST_CASE("rings of the mesh leave no gap") {
-  // Along the rim of a ring every vertex, wherever the camera stands in its cell, lies where the coarser ring has one.
-  Random random(5);
-  std::vector<AirItem> items;
-  const double cells = 128.0, cell = 0.125;
-  for (int n = 0; n < 200; ++n) {
-    const double x = random.uniform(-60, 60), y = random.uniform(-60, 60);
-    const double snap_x = std::floor(x / (2 * cell)) * 2 * cell, snap_y = std::floor(y / (2 * cell)) * 2 * cell;
-    for (int k = 0; k <= 128; k += 3)
-      for (const auto& [i, j] : {std::pair{0, k}, {128, k}, {k, 0}, {k, 128}})
-        items.push_back(
-            {AirPart::ring, {double(i), double(j), cells, 0.0}, {snap_x, snap_y, cell, 0.0}, {x, y, 0.0, 0.0}});
-  }
-  double gap = 0.0, moved = 0.0;
-  for (const AirAnswer& answer : evaluate_air(reference::earth(), items))
-    for (int k = 0; k < 2; ++k) {
-      const double steps = answer.radiance[k] / (2 * cell);
-      gap = std::max(gap, std::abs(steps - std::round(steps)));
-    }
-  // Next to the camera nothing slides.
-  for (const AirAnswer& answer :
-       evaluate_air(reference::earth(), {{AirPart::ring, {63, 65, cells, 0}, {1, 2, cell, 0}, {1.01, 2.01, 0, 0}}}))
-    moved = std::max(std::abs(answer.radiance[0] - (1 - cell)), std::abs(answer.radiance[1] - (2 + cell)));
-  CAPTURE(gap, moved);
-  CHECK(gap < 1e-4);
-  CHECK(moved < 1e-6);
-}
-
-TEST_CASE("scalars: the sun's disc over an edge, depth, shadow height, slices and back") {
+TEST_CASE("scalars: the sun's disc over an edge, shadow height, slices and back") {
   std::vector<AirItem> items;
   const double above[] = {-2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0}, s[] = {0.25, 1.0, 7.5, 16.0, 31.9, 32.0, 12.0};
   for (int i = 0; i < 7; ++i)
     items.push_back({AirPart::scalars,
-                     {above[i], 1e-4 / std::pow(10.0, i), 1e-4, 0.5},
+                     {above[i], 0.0, 0.0, 0.0},
                      {2.0, 30.0, 0.02, 0.0},
                      {s[i], 32.0, i % 2 == 0 ? 2.0 : 1.0, 0.0}});
   const std::vector<AirAnswer> answers = evaluate_air(reference::earth(), items);
@@ -162,7 +143,6 @@ TEST_CASE("scalars: the sun's disc over an edge, depth, shadow height, slices an
         if (x * x + y * y < 1.0) ++inside, over += y > -above[i];
       }
     CHECK(answers[i].radiance[0] == Approx(double(over) / inside).margin(2e-3));  // the counting's own error
-    CHECK(answers[i].radiance[1] == Approx(2.0 * std::pow(10.0, i)).epsilon(1e-6));
     CHECK(answers[i].radiance[2] == Approx(2.0 - 0.6 - 900.0 / 12720.0).epsilon(1e-5));
     CHECK(answers[i].transmittance[0] == Approx(s[i]).epsilon(2e-4));
   }

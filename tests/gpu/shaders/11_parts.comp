@@ -23,6 +23,38 @@ float sun_behind_terrain(float t_km, float altitude_km) { return seen_sun; }
 #include "11_aerial_perspective/aerial.glsl"
 #include "11_aerial_perspective/ground.glsl"
 #include "11_aerial_perspective/signs.glsl"
+
+// Height maps of any side, written down instead of stored: 0, one sample of 2 km, three quarters to the east and half way down;
+// 1, a ridge from north to south, 3 km high, between 49 and 51 km west of the middle.
+int field_kind = 0;
+int field_size = 64;
+float field_extent_km() { return field_kind == 0 ? 64.0 : 128.0; }
+vec2 ridge_samples() {
+  return vec2(ceil((-51.0 / 128.0 + 0.5) * float(field_size) - 0.5), floor((-49.0 / 128.0 + 0.5) * float(field_size) - 0.5));
+}
+float field_height(ivec2 at) {
+  const ivec2 inside = clamp(at, 0, field_size - 1);
+  if (field_kind == 0) return inside == ivec2(3 * field_size / 4, field_size / 2) ? 2.0 : 0.0;
+  const vec2 ridge = ridge_samples();
+  return float(inside.x) >= ridge.x && float(inside.x) <= ridge.y ? 3.0 : 0.0;
+}
+vec4 patch_corners(ivec2 cell) {
+  return vec4(field_height(cell - 1), field_height(ivec2(cell.x, cell.y - 1)), field_height(ivec2(cell.x - 1, cell.y)), field_height(cell));
+}
+float highest_in(ivec2 node, int level) {
+  const ivec2 low = (node << level) - 1, high = (node + 1) << level;  // samples at its corners
+  const ivec2 spike = ivec2(3 * field_size / 4, field_size / 2);
+  if (field_kind == 0) return all(greaterThanEqual(spike, low)) && all(lessThan(spike, high)) ? 2.0 : 0.0;
+  const vec2 ridge = ridge_samples();
+  return float(low.x) <= ridge.y && float(high.x - 1) >= ridge.x ? 3.0 : 0.0;
+}
+#include "11_aerial_perspective/height_field.glsl"
+HeightField field_of(Atmosphere air, vec4 c) {
+  field_size = int(c.x), field_kind = int(c.y);
+  int levels = 1;
+  while ((8 << levels) < field_size + 1) levels++;
+  return HeightField(air.ground_radius_km, field_extent_km(), field_kind == 0 ? 2.0 : 3.0, field_size, levels);
+}
 #include "../tests/gpu/shaders/atmosphere_of.glsl"
 
 layout(binding = 0, std430) readonly buffer Inputs {
@@ -43,7 +75,7 @@ RayLight run(Atmosphere air, vec4 a, vec4 b, vec4 c) {
   RayLight light = RayLight(vec3(0.0), vec3(1.0));
   if (kind == 0) return march_to(method, ray, scattering, c.x, int(c.y), int(c.z), b.w);  // d, slices, samples, power
   if (kind == 1) {  // c.x of a first slice c.y long; c.z: taken as linear instead, as a sampler would
-    const Veil whole = behind(method, ray, scattering, no_veil(), 0.0, c.y, 2);
+    const AirSegment whole = append_segment(method, ray, scattering, no_air(), 0.0, c.y, 2);
     if (c.z == 0.0) return light_before(froxel_of(whole, c.y), c.x * c.y);
     light.radiance = whole.radiance;  // what the nearest texel holds
     light.transmittance = exp(-whole.depth);
@@ -63,12 +95,21 @@ RayLight run(Atmosphere air, vec4 a, vec4 b, vec4 c) {
     light.transmittance = vec3(place_below(air.ground_radius_km, light.radiance), altitude_of(air.ground_radius_km, light.radiance));
     return light;
   }
-  if (kind == 5) {
-    light.radiance = vec3(ring_vertex(a.x, a.y, a.z, b.xy, b.z, c.xy), 0.0);
+  if (kind == 5) {  // start a.xyz, its altitude a.w; direction b.xyz, mu b.w; side c.x, map c.y
+    const HeightField field = field_of(air, c);
+    const Hit hit = first_hit(field, a.xyz, b.xyz, a.w, b.w, 0.0, 0.0);
+    light.radiance.xy = vec2(hit.t_km, hit.visits);
+    return light;
+  }
+  if (kind == 10) {  // place a.xy, tangent of the sun's elevation a.z; towards the sun b.xy; side c.x, map c.y
+    int visits = 0;
+    const HeightField field = field_of(air, c);
+    light.radiance.xy = shadow_over(field, a.xy, b.xy, a.z, 0.1, visits);
+    light.radiance.z = float(visits);
     return light;
   }
   if (kind == 6) {
-    light.radiance = vec3(disc_above(a.x), distance_from_depth(a.y, a.z, a.w), shadow_altitude(air.ground_radius_km, b.x, b.y, b.z));
+    light.radiance = vec3(disc_above(a.x), 0.0, shadow_altitude(air.ground_radius_km, b.x, b.y, b.z));
     light.transmittance.x = slices_before(slice_end(c.x, c.y, 128.0, c.z), c.y, 128.0, c.z);
     return light;
   }
@@ -82,7 +123,7 @@ RayLight run(Atmosphere air, vec4 a, vec4 b, vec4 c) {
     light.transmittance = ground.normal;
     return light;
   }
-  const SignHit hit = meet_sign(int(c.x), air.ground_radius_km, c.y, a.xyz, b.xyz);
+  const SignHit hit = meet_sign(int(c.x), air.ground_radius_km, c.y, a.xyz, b.xyz, 1.0e-4);
   light.radiance = vec3(hit.t_km, hit.paint, 0.0);
   light.transmittance = hit.normal;
   return light;
