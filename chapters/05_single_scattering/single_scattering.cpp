@@ -12,11 +12,13 @@ struct ProbePush {
   int32_t view_steps, count, unused[2];
 };
 
+// [constants]
 gpu::Constants march_constants(const app::Context& context) {
   return {{"SUN_DISC", context.scene.sun.disc, true},
           {"RULE", context.settings.integer("rule")},
           {"LIGHT_STEPS", context.settings.integer("light.steps"), true}};
 }
+// [/constants]
 
 }  // namespace
 

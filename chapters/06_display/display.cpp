@@ -116,7 +116,7 @@ static graph::Pass histogram_pass(const app::Context& context, graph::Resource p
 }
 // [/histogram]
 
-// [exposure]
+// [exposure_pass]
 // Turns the counts into one number and follows it in time: the state is read and written, frame after frame.
 static graph::Pass exposure_pass(const app::Context& context, graph::Resource histogram, graph::Resource state) {
   graph::Pass pass{.name = "exposure", .changed = [](const app::Frame&) { return true; }};
@@ -142,7 +142,9 @@ static graph::Pass exposure_pass(const app::Context& context, graph::Resource hi
                         }});
   return pass;
 }
+// [/exposure_pass]
 
+// [exposure]
 app::Effect exposure() {
   app::Effect effect{.name = "exposure", .chapter = 6, .knobs = exposure_knobs()};
   effect.wanted = [](const Scene& scene, const Settings&) -> app::Wanted {

@@ -104,7 +104,6 @@ bool Composition::stale() {
   return false;
 }
 
-// [rebuild]
 void Composition::rebuild() {
   try {
     follow();
@@ -114,6 +113,7 @@ void Composition::rebuild() {
   }
 }
 
+// [rebuild]
 void Composition::follow() {
   scene_ = context_.scene, values_ = context_.settings.values();
   bool anything = false;
@@ -138,6 +138,7 @@ void Composition::follow() {
   }
   if (anything) connect();
 }
+// [/rebuild]
 
 void Composition::declare(uint32_t index) {
   State& state = states_[index];
@@ -148,6 +149,7 @@ void Composition::declare(uint32_t index) {
   ++state.declared;
 }
 
+// [connect]
 // The last picture is drawn into the target, all others into images of the graph's own; then everything is made.
 void Composition::connect() {
   if (target_ == nullptr && find<Picture>() != nullptr) return;  // set_target() follows
@@ -166,7 +168,7 @@ void Composition::connect() {
   graph_.set_output(displayed_resource_, displayed_ != nullptr && find<Displayed>() != nullptr);
   graph_.compile(size_);
 }
-// [/rebuild]
+// [/connect]
 
 void Composition::reload() {
   pipelines_.forget();

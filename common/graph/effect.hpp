@@ -71,6 +71,7 @@ struct Builder {
   graph::Resource displayed_resource;
 };
 
+// [effect]
 struct Effect {
   std::string name;
   int chapter = 0;            // that teaches it: in others its knobs have no ladder and stand behind theirs
@@ -81,6 +82,7 @@ struct Effect {
   std::function<std::string(const Scene&, const Settings&)> key{};
   std::function<void(Builder&, Board&)> declare;
 };
+// [/effect]
 
 // The picture so far: surfaces and layers each take the one before and offer the next.
 struct Picture {

@@ -241,6 +241,7 @@ void Graph::record_barriers(const app::Frame& frame, const Made& made) {
 }
 // [/barriers]
 
+// [must_run]
 bool Graph::must_run(const Counted& counted, const app::Frame& frame) const {
   if (counted.fresh || (counted.pass.changed && counted.pass.changed(frame))) return true;
   for (const Made& step : counted.steps)
@@ -248,6 +249,7 @@ bool Graph::must_run(const Counted& counted, const app::Frame& frame) const {
       if (!touch.last_frame && (writes(touch.use) ? touch.held->outdated : touch.held->written_now)) return true;
   return false;
 }
+// [/must_run]
 
 // [execute]
 void Graph::execute(const app::Frame& frame, uint32_t view_offset) {
@@ -265,7 +267,9 @@ void Graph::execute(const app::Frame& frame, uint32_t view_offset) {
   ++frames_;
   cut_ = false;
 }
+// [/execute]
 
+// [record]
 void Graph::record(const app::Frame& frame, uint32_t view_offset, Counted& counted) {
   const bool timed = !counted.pass.times_itself;
   if (timed) frame.timer.begin_pass(frame.commands, counted.pass.name);
@@ -293,7 +297,7 @@ void Graph::record(const app::Frame& frame, uint32_t view_offset, Counted& count
   counted.fresh = false;
   ++counted.runs;
 }
-// [/execute]
+// [/record]
 
 void Graph::redo() {
   for (const auto& counted : passes_) counted->fresh = true;

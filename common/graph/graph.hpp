@@ -83,6 +83,7 @@ struct Recorder {
   void push_bytes(const void* values, uint32_t bytes) const;
 };
 
+// [step]
 struct Step {
   std::string shader{};  // none: `record` copies or updates
   gpu::Constants constants{};
@@ -92,7 +93,9 @@ struct Step {
   std::function<void(const Recorder&)> record;
   std::function<bool(const Recorder&)> when{};  // asked each frame; none: always
 };
+// [/step]
 
+// [pass]
 struct Pass {
   std::string name;  // in the table of times
   std::vector<Step> steps;
@@ -103,6 +106,7 @@ struct Pass {
   std::function<bool(const app::Frame&)> needed{};
   bool times_itself = false;  // its steps stamp passes of their own
 };
+// [/pass]
 
 // A barrier that was derived, for people.
 struct Barrier {

@@ -11,6 +11,7 @@
 namespace welkin {
 #endif
 
+// [view]
 struct ViewBlock {
   CameraRays camera;       // of this frame
   CameraRays last_camera;  // of the frame before; this frame's where `cut` is 1
@@ -27,6 +28,7 @@ struct ViewBlock {
   vec3 north;
   float unused_north;
 };
+// [/view]
 
 #ifdef __cplusplus
 static_assert(sizeof(ViewBlock) == 256 && offsetof(ViewBlock, last_camera) == 80);
