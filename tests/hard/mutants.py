@@ -80,6 +80,7 @@ def main():
     with tempfile.TemporaryDirectory(prefix="welkin-mutants-") as directory:
         work = Path(directory)
         shutil.copytree(ROOT / "shaders", work / "shaders")
+        (work / "tests").symlink_to(ROOT / "tests")  # harnesses include ../tests/gpu/shaders/atmosphere_of.glsl
         compile_programs(found, None, arguments.chapter, work / "shaders", work / "healthy")
         healthy = dict.fromkeys((m[4] for m in chosen), True)
         for test in () if arguments.tested else healthy:
