@@ -1,6 +1,10 @@
 // The pass "sky" and its probe. See sky.hpp and docs/chapters/10_sky_view_lut.md.
 #include "chapters/10_sky_view_lut/sky.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
 #include <map>
 
 #include "chapters/05_single_scattering/probe.hpp"
@@ -16,13 +20,13 @@ struct ProbePush {
 };
 
 // One look-up a pixel; with the sun's disc, through the air that chapter 08's table knows.
-graph::Step look_up(const app::Context& context, app::Board& board) {
+graph::Step look_up(app::Board& board, bool with_disc) {
   const AirBlock& air = board.get<AirBlock>("the air");
   const SkyViewTable& table = board.get<SkyViewTable>("a sky view table");
   graph::Step step{.shader = "10_sky_view_lut/sky.comp",
                    .constants = joined(air.constants, {{"SKY_VIEW_UNIT", table.unit}}),
                    .bindings = {{"Air", air.block}, {"sky_view_table", table.image}}};
-  if (!context.scene.sun.disc) return step;
+  if (!with_disc) return step;
   const TransmittanceTable& transmittance = board.get<TransmittanceTable>("a transmittance table");
   step.shader = "10_sky_view_lut/sky_disc.comp";
   step.constants = joined(step.constants, transmittance.constants);
@@ -30,10 +34,18 @@ graph::Step look_up(const app::Context& context, app::Board& board) {
   return step;
 }
 
+// Whether the sun's disc may be in the picture: within the cone around the look direction that holds its corners.
+bool sun_in_picture(const Scene& scene, const CameraRays& camera) {
+  const double corner = std::atan(std::hypot(glm::length(camera.right), glm::length(camera.up)));
+  const double margin = 1e-3 + glm::radians(scene.sun.angular_radius_deg);
+  return glm::dot(camera.forward, camera.sun) >= std::cos(std::min(corner + margin, glm::radians(180.0)));
+}
+
 }  // namespace
 
 // [sky]
-// Two steps write the picture, and in each frame one of them does.
+// Three steps write the picture, and in each frame one of them does: the look-up with the sun's disc, the look-up where
+// the disc is out of the picture, and the march.
 app::Effect sky() {
   app::Effect effect{.name = "sky", .chapter = 10, .knobs = {march_knob("view.steps")}};
   effect.knobs.front().ladder.clear();  // climbed in chapter 05
@@ -42,21 +54,28 @@ app::Effect sky() {
     const app::Context& context = builder.context;
     const graph::Resource picture = builder.picture(board, "sky");
     const bool has_orders = board.find<MultipleScatteringTable>() != nullptr;
-    graph::Step look = look_up(context, board), march = all_orders_step(context, board, "image");
-    look.bindings.push_back({"target", picture});
-    march.bindings.push_back({"target", picture});
-    const auto serves = [context](const graph::Recorder& r) {
-      return sky_view_serves(context.settings, r.frame.camera.altitude_km);
-    };
-    look.when = serves;
-    look.record = [picture](const graph::Recorder& r) { r.dispatch_over(r.graph.image(picture).size); };
-    march.when = [serves](const graph::Recorder& r) { return !serves(r); };
-    march.record = [context, picture, has_orders](const graph::Recorder& r) {
-      record_all_orders(context, r, has_orders, r.graph.image(picture).size);
-    };
+    const auto cover = [picture](const graph::Recorder& r) { r.dispatch_over(r.graph.image(picture).size); };
     graph::Pass pass{.name = "sky", .changed = [](const app::Frame&) { return true; }};
-    pass.steps.push_back(std::move(look));
-    pass.steps.push_back(std::move(march));
+    const auto add = [&](graph::Step step, auto when, auto record) {
+      step.bindings.push_back({"target", picture});
+      step.when = [context, when](const graph::Recorder& r) {
+        const CameraRays& camera = r.frame.camera;
+        return when(sky_view_serves(context.settings, camera.altitude_km),
+                    context.scene.sun.disc && sun_in_picture(context.scene, camera));
+      };
+      step.record = record;
+      pass.steps.push_back(std::move(step));
+    };
+    if (context.scene.sun.disc)
+      add(
+          look_up(board, true), [](bool serves, bool sun) { return serves && sun; }, cover);
+    add(
+        look_up(board, false), [](bool serves, bool sun) { return serves && !sun; }, cover);
+    add(
+        all_orders_step(context, board, "image"), [](bool serves, bool) { return !serves; },
+        [context, picture, has_orders](const graph::Recorder& r) {
+          record_all_orders(context, r, has_orders, r.graph.image(picture).size);
+        });
     builder.graph.add(std::move(pass));
   };
   return effect;

@@ -74,91 +74,73 @@ struct Texts {
 };
 
 void add_device_options(CLI::App& cli, Options& options, Texts& texts) {
-  cli.add_flag("--list-gpus", options.list_gpus, "List the Vulkan devices and stop")->group("device");
+  cli.option_defaults()->group("device");
+  cli.add_flag("--list-gpus", options.list_gpus, "List the Vulkan devices and stop");
   cli.add_option("--gpu", options.gpu, "Device to use: its number in --list-gpus or part of its name")
-      ->type_name("N|NAME")
-      ->group("device");
-  cli.add_option("--validation", texts.validation, "Validation layers: off, on, sync")
-      ->type_name("off|on|sync")
-      ->group("device");
-  cli.add_flag("--require-gpu", options.require_gpu, "No Vulkan device is an error (exit 2), not a skip (exit 77)")
-      ->group("device");
+      ->type_name("N|NAME");
+  cli.add_option("--validation", texts.validation, "Validation layers: off, on, sync")->type_name("off|on|sync");
+  cli.add_flag("--require-gpu", options.require_gpu, "No Vulkan device is an error (exit 2), not a skip (exit 77)");
 }
 
 void add_picture_options(CLI::App& cli, Options& options, Texts& texts, const Chapter& chapter) {
-  cli.add_flag("--headless", options.headless, "Draw without a window, into a file")->group("picture");
-  cli.add_option("--size", texts.size, "Picture size in pixels [1280x720]")->type_name("WxH")->group("picture");
+  cli.option_defaults()->group("picture");
+  cli.add_flag("--headless", options.headless, "Draw without a window, into a file");
+  cli.add_option("--size", texts.size, "Picture size in pixels [1280x720]")->type_name("WxH");
   cli.add_option("--frames", texts.frames,
                  "Frames to draw, then stop [headless 1, of a path 24 a second; window: until closed]")
-      ->type_name("N")
-      ->group("picture");
+      ->type_name("N");
   cli.add_option("--scene", options.scene,
                  fmt::format("Scene by name, .toml file, or a picture a chapter wrote [{}]", chapter.default_scene))
-      ->type_name("NAME|FILE")
-      ->group("picture");
-  cli.add_option("--view", options.view, "View of the scene [its first]")->type_name("NAME")->group("picture");
+      ->type_name("NAME|FILE");
+  cli.add_option("--view", options.view, "View of the scene [its first]")->type_name("NAME");
   cli.add_option("--path", options.path, "Moving camera: a [[path]] of the scene, or the first of another scene file")
-      ->type_name("NAME|FILE")
-      ->group("picture");
-  cli.add_option("--set", texts.set, "Set a knob (repeatable)")
-      ->type_name("key=value")
-      ->allow_extra_args(false)
-      ->group("picture");
-  cli.add_option("--seed", texts.seed, "Seed of everything random [1]")->type_name("N")->group("picture");
+      ->type_name("NAME|FILE");
+  cli.add_option("--set", texts.set, "Set a knob (repeatable)")->type_name("key=value")->allow_extra_args(false);
+  cli.add_option("--seed", texts.seed, "Seed of everything random [1]")->type_name("N");
   cli.add_option("--time", texts.time,
                  "Seconds after the moment of the sun's angles: it moves 15 degrees an hour [the scene's]")
-      ->type_name("T")
-      ->group("picture");
+      ->type_name("T");
 }
 
 void add_output_options(CLI::App& cli, Options& options, Texts& texts, const Chapter& chapter) {
+  cli.option_defaults()->group("output");
   cli.add_option("--output", options.output,
                  "Write the (last) picture: .png displayed, .exr linear [out/" + chapter.name + ".png]")
-      ->type_name("FILE")
-      ->group("output");
+      ->type_name("FILE");
   cli.add_option("--supersample", texts.supersample,
                  "Draw the picture N times as large each way and average it, without a window [1]")
-      ->type_name("N")
-      ->group("output");
+      ->type_name("N");
   cli.add_option("--dump", texts.dump,
                  "Write 'picture' (.exr), 'displayed' (.png), 'knobs' (.json)" +
                      (chapter.images.empty() ? std::string()
                                              : fmt::format(", or an image (.exr, or .png as exposed): {}",
                                                            fmt::join(chapter.images, ", "))))
       ->type_name("WHAT FILE")
-      ->expected(2)
-      ->group("output");
-  cli.add_flag("--explain", options.explain, "Say which effects are simulated, why, with passes, bytes and time")
-      ->group("output");
+      ->expected(2);
+  cli.add_flag("--explain", options.explain, "Say which effects are simulated, why, with passes, bytes and time");
 }
 
 void add_measure_options(CLI::App& cli, Options& options) {
-  cli.add_option("--bench", options.bench, "Measure repeated frames and write JSON")
-      ->type_name("FILE.json")
-      ->group("measure");
+  cli.option_defaults()->group("measure");
+  cli.add_option("--bench", options.bench, "Measure repeated frames and write JSON")->type_name("FILE.json");
   cli.add_option("--sweep", options.sweep, "Measure error against time over the knobs' ladders and write CSV")
-      ->type_name("FILE.csv")
-      ->group("measure");
+      ->type_name("FILE.csv");
   cli.add_option("--probe", options.probe,
                  "Rays to evaluate: altitude_km,view_zenith_deg,sun_zenith_deg,relative_azimuth_deg")
-      ->type_name("RAYS.csv")
-      ->group("measure");
+      ->type_name("RAYS.csv");
   cli.add_option("--probe-out", options.probe_out, "Where the rays' radiance and transmittance go")
-      ->type_name("FILE.csv")
-      ->group("measure");
+      ->type_name("FILE.csv");
   cli.add_option("--against", options.against, "Print the errors of the picture against this one")
-      ->type_name("FILE.exr")
-      ->group("measure");
+      ->type_name("FILE.exr");
 }
 
 void add_test_options(CLI::App& cli, Options& options, Texts& texts) {
+  cli.option_defaults()->group("tests");
   cli.add_option("--golden", texts.golden, "Compare the standard views with the goldens, or write them anew")
-      ->type_name("check|update")
-      ->group("tests");
+      ->type_name("check|update");
   cli.add_option("--inject", options.inject,
                  "Plant a fault: nan, missing-barrier, graph-barrier, wrong-constant, missing-feature")
-      ->type_name("FAULT")
-      ->group("tests");
+      ->type_name("FAULT");
 }
 
 // False if --help is all that was asked.

@@ -107,7 +107,7 @@ Image16 read_png16(const std::filesystem::path& file) {
   Png png(file);
   const LodePNGColorMode& colour = png.state.info_png.color;
   if (colour.colortype != LCT_GREY || colour.bitdepth != 16)
-    fail("{}: {} bits a sample, {}; accepted is 16-bit grayscale", png.name, colour.bitdepth,
+    fail("{}: {} bits a sample, {}, where 16-bit grayscale is read", png.name, colour.bitdepth,
          colour.colortype == LCT_GREY ? "grayscale" : "not grayscale alone");
   const std::vector<uint8_t> raw = png.decode(LCT_GREY, 16);  // big endian
   Image16 heights{png.width, png.height, std::vector<uint16_t>(raw.size() / 2)};

@@ -77,7 +77,8 @@ TEST_CASE("height maps that are none are refused in one line") {
   write_height_map(named("large.png"), 4097, 4097, flat);
   write_file_atomically(named("text.png"), "this is not a picture, though its name says that it is one");
   CHECK(refusal({.height_map = named("eight.png")}) ==
-        "height map: " + named("eight.png") + ": 8 bits a sample, grayscale; " + accepted);
+        "height map: " + named("eight.png") + ": 8 bits a sample, grayscale, where 16-bit grayscale is read; " +
+            accepted);
   CHECK(refusal({.height_map = named("oblong.png")}) ==
         "height map: " + named("oblong.png") + ": 4 x 8 samples, not square; " + accepted);
   CHECK(refusal({.height_map = named("one.png")}) ==

@@ -34,8 +34,8 @@ MUTANTS = [
      "* (alpha + vec3(2.0, 2.0, 2.0)) * 0.5;", ";", "sun disc: as a whole it sends exactly the irradiance"),
     ("the sun's disc in one piece per pixel", "04_air/sun_in_pixel.glsl",
      "disc.side = clamp(int(ceil(8.0 * max(wide.x, wide.y))), 2, 12);", "disc.side = 1;", "sun pixels: pictures of every size*"),
-    ("rows of the disc that do not lean with the ellipse", "04_air/sun_in_pixel.glsl",
-     "disc.shift = x * y / across2 * half_height / half_width;", "disc.shift = 0.0;", "sun pixels: from a far star's disc*"),
+    ("the disc is a circle in the image plane, wherever it stands", "04_air/sun_in_pixel.glsl",
+     "float half_height = sqrt(sine2 * across2) / q;", "float half_height = sqrt(sine2);", "sun pixels: pictures of every size*"),
     ("the disc shines through the horizon", "04_air/sun_in_pixel.glsl",
      "    node.share *= seen / height;\n", "", "sun pixels: the horizon cuts the disc*"),
 ]
