@@ -132,8 +132,8 @@ void AutoDisplay::rebuild() {
 }
 
 std::string AutoDisplay::explain() const {
-  return meter_ ? "light meter            on   post.exposure is auto: passes histogram and exposure\n"
-                : "light meter            off  post.exposure is manual: no pass, no buffer\n";
+  return meter_ ? "light meter            on   the scene's [post] asks for it: passes histogram and exposure\n"
+                : "light meter            off  the scene's [post] sets the exposure by hand: no pass, no buffer\n";
 }
 
 void AutoDisplay::set_images(const gpu::Image& picture, const gpu::Image& displayed) {
