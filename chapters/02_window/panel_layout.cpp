@@ -112,14 +112,9 @@ void choice_row(const char* name, const char* help, const std::string& now, std:
   ImGui::EndCombo();
 }
 
-// The moment: a date that the scene gives, or angles; and hours from there.
+// The moment: hours from that of the scene's angles.
 void time_rows(Scene& scene) {
-  if (scene.sun.utc) {
-    name_of_row("date, UTC", "the scene's moment and place, from which the sun's angles follow");
-    ImGui::TextWrapped("%s", scene.sun.utc->c_str());
-  }
-  name_of_row(scene.sun.utc ? "hours later" : "time",
-              "turns the sky about the planet's axis: 15 degrees an hour (--time, in seconds)");
+  name_of_row("time", "turns the sky about the planet's axis: 15 degrees an hour (--time, in seconds)");
   if (!scene.sun.latitude_deg) return ImGui::TextDisabled("no latitude in [sun]");
   float hours = static_cast<float>(scene.time_s / 3600.0);
   if (ImGui::SliderFloat("##time", &hours, -12.0f, 12.0f, "%+.2f h")) scene.time_s = 3600.0 * hours;

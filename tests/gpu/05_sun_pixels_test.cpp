@@ -31,7 +31,7 @@ struct Shot {
     scene.sun.azimuth_deg = sun_azimuth;
     View view;
     view.altitude_km = altitude_km, view.azimuth_deg = azimuth, view.elevation_deg = elevation, view.fov_deg = fov;
-    return app::camera_rays(app::pose_of(view), scene, 0.0, size, 1, 0);
+    return app::camera_rays(app::pose_of(view, scene.planet.ground_radius_km), scene, 0.0, size, 1, 0);
   }
 };
 

@@ -5,6 +5,7 @@
 
 #include "chapters/06_display/display.hpp"
 #include "common/gpu/instance.hpp"
+#include "common/gpu/shader_file.hpp"
 #include "tests/gpu/10_sky.hpp"
 #include "tests/gpu/11_parts.hpp"
 
