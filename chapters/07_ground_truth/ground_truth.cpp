@@ -257,7 +257,8 @@ std::string GroundTruth::explain() const {
 }
 
 app::Effect paths() {
-  return app::drawn_by("paths", 7, path_knobs(), [](const app::Context& context) { return std::make_unique<GroundTruth>(context); });
+  return app::drawn_by("paths", 7, path_knobs(),
+                       [](const app::Context& context) { return std::make_unique<GroundTruth>(context); });
 }
 
 std::vector<app::ProbeResult> probe_paths(const app::Context& context, std::span<const app::ProbeRay> rays) {

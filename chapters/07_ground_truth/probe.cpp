@@ -1,9 +1,10 @@
 // Single rays: paths are spread over (ray, block), summed in float32 within a block of a few and in double beyond.
+#include "chapters/05_single_scattering/probe.hpp"
+
 #include <algorithm>
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
 
-#include "chapters/05_single_scattering/probe.hpp"
 #include "chapters/07_ground_truth/ground_truth.hpp"
 
 namespace welkin {

@@ -36,7 +36,7 @@ Plan plan_of(const Scene& scene, const Settings& settings) {
 }  // namespace
 
 // [knobs]
-std::vector<Knob> multiple_scattering_knobs() {
+static std::vector<Knob> order_knobs() {
   return {{.name = "orders",
            .meaning = "orders of scattering: 0 all, 1 single scattering only (then there is no table)",
            .minimum = 0,
@@ -95,8 +95,11 @@ std::vector<Knob> multiple_scattering_knobs() {
            .maximum = 256,
            .initial = 16,
            .integer = true,
-           .ladder = {4, 8, 16, 32}},
-          {.name = "multiple_scattering.size",
+           .ladder = {4, 8, 16, 32}}};
+}
+
+static std::vector<Knob> texel_knobs() {
+  return {{.name = "multiple_scattering.size",
            .unit = "texels",
            .meaning = "altitudes, and sun heights, in the table",
            .minimum = 8,
@@ -119,6 +122,8 @@ std::vector<Knob> multiple_scattering_knobs() {
            .ladder = {0, 1},
            .rebuilds = true}};
 }
+
+std::vector<Knob> multiple_scattering_knobs() { return joined(order_knobs(), texel_knobs()); }
 // [/knobs]
 
 // [orders_of]

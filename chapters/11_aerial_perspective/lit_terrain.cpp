@@ -21,6 +21,7 @@ app::Effect lit_terrain() {
     graph::Step step = aerial_step(context, board, froxels != nullptr ? "compose.comp" : "compose_march.comp");
     step.constants.push_back({"MARCH_SLICES", context.settings.integer("aerial.march_slices")});
     step.constants.push_back({"HAS_EDGES", context.settings.choice("terrain.edges") == "on"});
+    step.constants.push_back({"HAS_DETAIL", context.settings.choice("terrain.detail") == "on"});
     step.bindings.insert(step.bindings.end(), {{"terrain_distance", maps.distance},
                                                {"slope_map", maps.slopes},
                                                {"cover_map", maps.cover},

@@ -111,16 +111,17 @@ static Knob shadow_knob() {
 }
 
 static std::vector<Knob> surface_knobs() {
-  return {{.name = "terrain.detail",
-           .meaning = "relief finer than the map's where a ray meets the ground within 250 m",
-           .initial = 1,
-           .choices = {"off", "on"},
-           .rebuilds = true},
-          {.name = "terrain.edges",
-           .meaning = "a crest that a ray passes by less than half a pixel covers a part of it, or nothing",
-           .initial = 1,
-           .choices = {"off", "on"},
-           .rebuilds = true}};
+  return {
+      {.name = "terrain.detail",
+       .meaning = "relief and cover finer than the map's: scales of noise down to centimetres, none wider than a pixel",
+       .initial = 1,
+       .choices = {"off", "on"},
+       .rebuilds = true},
+      {.name = "terrain.edges",
+       .meaning = "a crest that a ray passes by less than half a pixel covers a part of it, or nothing",
+       .initial = 1,
+       .choices = {"off", "on"},
+       .rebuilds = true}};
 }
 
 std::vector<Knob> terrain_knobs() { return joined(surface_knobs(), {shadow_knob()}); }

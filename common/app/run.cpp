@@ -168,7 +168,8 @@ void write_output(const Session& session, const std::string& file, const CameraP
 }
 
 bool has_meter(const Chapter& chapter) {
-  return std::any_of(chapter.effects.begin(), chapter.effects.end(), [](const Effect& effect) { return effect.name == "exposure"; });
+  return std::any_of(chapter.effects.begin(), chapter.effects.end(),
+                     [](const Effect& effect) { return effect.name == "exposure"; });
 }
 
 std::unique_ptr<Program> make_program(const Chapter& chapter, const Context& context) {

@@ -37,9 +37,9 @@ std::set<std::type_index> Board::withdraw(uint32_t effect) {
 }
 
 graph::Resource Builder::picture(Board& board, const std::string& name) const {
-  const graph::Resource image = graph.add_image(name);
-  board.offer(Picture{image});
-  return image;
+  if (!picture_resource) picture_resource = graph.add_lasting_image(name);
+  board.offer(Picture{*picture_resource});
+  return *picture_resource;
 }
 
 graph::Resource Builder::displayed(Board& board) const {
@@ -130,11 +130,15 @@ void Composition::follow() {
     state.key = std::move(key), state.built = true;
     graph_.remove(i);
     state.adjust_camera = {}, state.explain = {};
-    changed.merge(board_.withdraw(i));
+    std::set<std::type_index> withdrawn = board_.withdraw(i);
+    const bool drew = withdrawn.contains(typeid(Picture)), other_picture = changed.contains(typeid(Picture));
+    changed.merge(withdrawn);
     if (!state.wanted.on) continue;
     declare(i);
     for (const auto& [type, offers] : board_.offers_)
       if (offers.contains(i)) changed.insert(type);
+    if (drew && !other_picture && board_.offers_[typeid(Picture)].contains(i))
+      changed.erase(typeid(Picture));  // the same one, with other light in it
   }
   if (anything) connect();
 }
@@ -144,7 +148,7 @@ void Composition::declare(uint32_t index) {
   State& state = states_[index];
   board_.current_ = index, board_.current_name_ = state.effect.name;
   graph_.set_owner(index);
-  Builder builder{context_, graph_, state.adjust_camera, state.explain, displayed_resource_};
+  Builder builder{context_, graph_, state.adjust_camera, state.explain, displayed_resource_, state.picture};
   state.effect.declare(builder, board_);
   ++state.declared;
 }

@@ -53,6 +53,7 @@ class Composition : public Program {
     uint64_t declared = 0;
     std::function<void(CameraRays&, glm::dvec3&)> adjust_camera;
     std::function<std::string()> explain;
+    std::optional<graph::Resource> picture;  // that it draws, whenever it does
   };
   uint32_t index_of(const std::string& effect) const;
   Wanted wanted_of(const State& state) const;

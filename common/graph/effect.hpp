@@ -8,6 +8,7 @@
 #include <any>
 #include <functional>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <typeindex>
@@ -62,6 +63,7 @@ struct Builder {
   graph::Graph& graph;
 
   // The picture after this effect: rgba32f of the picture's size. The last one is what the frame is for.
+  // It stays the same resource when the effect is declared anew: what is drawn after it stands on no other picture.
   graph::Resource picture(Board& board, const std::string& name) const;
   // The 8-bit picture that is shown and saved; by one effect only.
   graph::Resource displayed(Board& board) const;
@@ -69,6 +71,7 @@ struct Builder {
   std::function<void(CameraRays& camera, glm::dvec3& position_km)>& adjust_camera;
   std::function<std::string()>& explain;  // what --explain adds: whole lines
   graph::Resource displayed_resource;
+  std::optional<graph::Resource>& picture_resource;  // of this effect
 };
 
 // [effect]

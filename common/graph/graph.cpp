@@ -255,6 +255,7 @@ bool Graph::must_run(const Counted& counted, const app::Frame& frame) const {
 void Graph::execute(const app::Frame& frame, uint32_t view_offset) {
   for (auto& [resource, held] : held_) {
     held.written_now = false;
+    held.last_valid = !cut_ && !held.outdated && frames_ > 0 && held.written_frame == frames_;
     touched_between_frames(held);
   }
   for (Counted* counted : order_) {
@@ -303,10 +304,7 @@ void Graph::redo() {
   for (const auto& counted : passes_) counted->fresh = true;
 }
 
-bool Graph::valid(Resource history) const {
-  const Held& held = held_.at(history);
-  return !cut_ && !held.outdated && held.written_frame != 0 && held.written_frame == frames_;
-}
+bool Graph::valid(Resource history) const { return held_.at(history).last_valid; }
 
 void Graph::cut() { cut_ = true; }
 

@@ -125,6 +125,7 @@ class Graph {
   void remove(uint32_t owner);
 
   Resource add_image(std::string name, ImageInfo info = {});
+  Resource add_lasting_image(std::string name, ImageInfo info = {});  // of no effect: remove() leaves it
   Resource add_buffer(std::string name, BufferInfo info);
   // Two images that take turns: this frame's is written, last frame's is read with Binding::last_frame.
   Resource add_history(std::string name, ImageInfo info = {});
@@ -194,6 +195,7 @@ class Graph {
     gpu::Use between_frames;
     bool output = false;
     bool written_now = false;    // in the frame being recorded
+    bool last_valid = false;     // a history's: last frame's image is that
     bool outdated = false;       // its content is gone or no longer right
     uint64_t written_frame = 0;  // of its last write, counted from 1
     std::array<std::vector<State>, 2> states;
@@ -250,6 +252,7 @@ class Graph {
   uint32_t owner_ = 0;
   uint64_t frames_ = 0;
   bool cut_ = false;
+  static constexpr uint32_t kNobody = ~0u;
   Resource next_ = 0;
   const gpu::Buffer* view_ = nullptr;
   uint32_t view_bytes_ = 0;

@@ -54,6 +54,12 @@ Resource Graph::hold(Held held) {
 }
 
 Resource Graph::add_image(std::string name, ImageInfo info) { return hold({.name = std::move(name), .info = info}); }
+Resource Graph::add_lasting_image(std::string name, ImageInfo info) {
+  const Resource image = add_image(std::move(name), info);
+  held_of(image).owner = kNobody;
+  return image;
+}
+
 Resource Graph::add_history(std::string name, ImageInfo info) {
   return hold({.name = std::move(name), .kind = Kind::history, .info = info});
 }

@@ -5,6 +5,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 22) const int MARCH_SLICES = 64;
 layout(constant_id = 23) const bool HAS_EDGES = true;
+layout(constant_id = 24) const bool HAS_DETAIL = true;
 
 #if FROXELS
 layout(binding = 3) uniform sampler3D froxel_in_scattering;
@@ -90,7 +91,7 @@ void main() {
     const float share = shares[layer];
     Surface surface;
     if (layer == 2) surface = sign.surface;
-    else surface = terrain_surface(air.ground_radius_km, extent_km, air.ground_albedo, frame.position_km, direction, layer == 0 ? terrain.x : terrain.y, pixel_rad);
+    else surface = terrain_surface(air.ground_radius_km, extent_km, air.ground_albedo, frame.position_km, direction, layer == 0 ? terrain.x : terrain.y, HAS_DETAIL ? pixel_rad : kNoDetail);
     const float altitude = max(altitude_of(air.ground_radius_km, frame.position_km + direction * surface.t_km), 0.0);
     radiance = mix(radiance, surface_seen(air, surface, view, sun, altitude, place), share);
   }

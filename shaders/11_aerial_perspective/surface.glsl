@@ -7,6 +7,8 @@
 #include "11_aerial_perspective/ground.glsl"
 #include "11_aerial_perspective/signs.glsl"
 
+const float kNoDetail = 1.0e6;  // a pixel so wide that it shows none
+
 struct Surface {
   float t_km;
   bool is_terrain;

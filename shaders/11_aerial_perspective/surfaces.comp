@@ -9,6 +9,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const float SIGNS_AZIMUTH = -1.0e3;  // rad, below -100 without
 layout(constant_id = 1) const float EXTENT_KM = 128.0;
 layout(constant_id = 2) const float RADIUS_KM = 6360.0;
+layout(constant_id = 3) const bool HAS_DETAIL = true;
 
 layout(binding = 0, rgba32f) uniform readonly image2D terrain_distance;
 layout(binding = 1) uniform sampler2D slope_map;
@@ -34,7 +35,7 @@ void main() {
   const vec4 terrain = imageLoad(terrain_distance, pixel);
   bool seen = terrain.x > 0.0;
   Surface surface;
-  if (seen) surface = terrain_surface(RADIUS_KM, EXTENT_KM, bare_albedo.rgb, frame.position_km, direction, terrain.x, pixel_rad);
+  if (seen) surface = terrain_surface(RADIUS_KM, EXTENT_KM, bare_albedo.rgb, frame.position_km, direction, terrain.x, HAS_DETAIL ? pixel_rad : kNoDetail);
   if (SIGNS_AZIMUTH > -100.0) {
     const SignSeen sign = sign_before(RADIUS_KM, frame.position_km, direction, seen ? terrain.x : 1.0e9, SIGNS_AZIMUTH, pixel_rad);
     if (sign.share > 0.5) surface = sign.surface, seen = true;  // a path meets one surface or the other

@@ -55,7 +55,7 @@ TEST_CASE("graph: a shader says what it has, and a wrong name, type or size is o
          exposure.bindings[1].bytes == 16));
   CHECK(exposure.push_constant_bytes == 28);
   std::vector<uint32_t> cut = gpu::load_spirv("06_display/exposure.comp");
-  cut.resize(cut.size() - 3);
+  cut.resize(9);  // within the second instruction
   CHECK_THROWS_WITH(gpu::reflect(cut, "exposure"), "shader exposure: its SPIR-V is cut short; build it again");
 
   const auto record = [](const graph::Recorder& r) { r.push(1.0f).dispatch(1); };

@@ -182,6 +182,46 @@ struct Piece {
   bool operator<(const Piece& other) const { return worst < other.worst; }
 };
 
+// The sum of an integrand over pieces; the one with the worst error is halved until the whole is good enough.
+template <typename F>
+struct AdaptiveSum {
+  explicit AdaptiveSum(const F& f) : integrand(f) {}
+
+  void add(double a, double b) {
+    Piece piece{a, b, kronrod<6>(integrand, a, b), 0.0};
+    for (int c = 0; c < 6; ++c) {
+      total[c] += piece.estimate.value[c];
+      error[c] += piece.estimate.error[c];
+    }
+    for (int c = 0; c < 6; ++c)
+      if (total[c] > 0.0) piece.worst = std::max(piece.worst, piece.estimate.error[c] / total[c]);
+    queue.push(piece);
+  }
+  double relative_error() const {
+    double worst = 0.0;
+    for (int c = 0; c < 6; ++c)
+      if (total[c] > 0.0) worst = std::max(worst, error[c] / total[c]);
+    return worst;
+  }
+  void refine(double tolerance) {
+    for (int step = 0; step < 400 && !queue.empty() && relative_error() > tolerance; ++step) {
+      const Piece piece = queue.top();
+      queue.pop();
+      for (int c = 0; c < 6; ++c) {
+        total[c] -= piece.estimate.value[c];
+        error[c] -= piece.estimate.error[c];
+      }
+      const double centre = 0.5 * (piece.a + piece.b);
+      add(piece.a, centre);
+      add(centre, piece.b);
+    }
+  }
+
+  const F& integrand;
+  std::priority_queue<Piece> queue;
+  std::array<double, 6> total{}, error{};
+};
+
 }  // namespace
 
 Planet earth() { return {}; }
@@ -239,8 +279,7 @@ SingleScattering single_scattering(const Planet& planet, double altitude_km, con
   const double top_h = planet.top_radius_km - R;
   const double h0 = std::max(0.0, altitude_km);
   const double r0 = R + h0;
-  const double sine = std::hypot(view[0], view[1]);
-  const double mu = view[2];
+  const double sine = std::hypot(view[0], view[1]), mu = view[2];
   const double nu = view[0] * sun[0] + view[1] * sun[1] + view[2] * sun[2];
   const Line line = line_of(planet, r0, sine);
   out.nu = nu;
@@ -253,9 +292,7 @@ SingleScattering single_scattering(const Planet& planet, double altitude_km, con
   const double begin = h0 > top_h ? -top_s : camera_s;
   const double end = ground ? -half_chord(line, planet, 0.0) : top_s;
   out.end = ground ? RayEnd::kGround : RayEnd::kSky;
-  if (!(end > begin)) {  // camera on the ground looking down, or on the top looking out
-    if (!ground) return out;
-  }
+  if (!(end > begin) && !ground) return out;  // on the top looking out; else on the ground looking down
 
   const auto sun_optical_depth = [&](double s, double h, bool& lit) {
     const double r = R + h;
@@ -283,55 +320,26 @@ SingleScattering single_scattering(const Planet& planet, double altitude_km, con
     return y;
   };
 
-  std::priority_queue<Piece> queue;
-  std::array<double, 6> total{};
-  std::array<double, 6> error{};
-  const auto push = [&](double a, double b) {
-    Piece piece{a, b, kronrod<6>(integrand, a, b), 0.0};
-    for (int c = 0; c < 6; ++c) {
-      total[c] += piece.estimate.value[c];
-      error[c] += piece.estimate.error[c];
-    }
-    for (int c = 0; c < 6; ++c)
-      if (total[c] > 0.0) piece.worst = std::max(piece.worst, piece.estimate.error[c] / total[c]);
-    queue.push(piece);
-  };
+  AdaptiveSum sum(integrand);
   const double mu_begin_sun = (r0 * sun[2] + (begin - camera_s) * nu);
   const double r_begin = std::hypot(line.b, begin);
   for (const auto& part : lit_parts(r_begin, begin / r_begin, mu_begin_sun / r_begin, nu, end - begin, R)) {
-    const double a = begin + part[0];
-    const double b = begin + part[1];
+    const double a = begin + part[0], b = begin + part[1];
     if (!(b > a)) continue;
     std::vector<double> cuts;
     add_ladder(cuts, line, planet, a, b, planet.rayleigh_scale_height_km);
     add_ladder(cuts, line, planet, a, b, planet.mie_scale_height_km);
     add_tent(cuts, line, planet);
     cuts = finish_cuts(std::move(cuts), a, b);
-    for (std::size_t i = 0; i + 1 < cuts.size(); ++i) push(cuts[i], cuts[i + 1]);
+    for (std::size_t i = 0; i + 1 < cuts.size(); ++i) sum.add(cuts[i], cuts[i + 1]);
   }
-  const auto relative_error = [&] {
-    double worst = 0.0;
-    for (int c = 0; c < 6; ++c)
-      if (total[c] > 0.0) worst = std::max(worst, error[c] / total[c]);
-    return worst;
-  };
-  for (int step = 0; step < 400 && !queue.empty() && relative_error() > tolerance; ++step) {
-    const Piece piece = queue.top();
-    queue.pop();
-    for (int c = 0; c < 6; ++c) {
-      total[c] -= piece.estimate.value[c];
-      error[c] -= piece.estimate.error[c];
-    }
-    const double centre = 0.5 * (piece.a + piece.b);
-    push(piece.a, centre);
-    push(centre, piece.b);
-  }
-  out.relative_error = relative_error();
+  sum.refine(tolerance);
+  out.relative_error = sum.relative_error();
 
   const Rgb tau = optical_depth(planet, line_columns(planet, line, begin, end));
   for (int c = 0; c < 3; ++c) {
-    out.rayleigh[c] = std::max(0.0, total[c]);
-    out.mie[c] = std::max(0.0, total[c + 3]);
+    out.rayleigh[c] = std::max(0.0, sum.total[c]);
+    out.mie[c] = std::max(0.0, sum.total[c + 3]);
     out.transmittance[c] = std::exp(-tau[c]);
   }
   if (ground) {

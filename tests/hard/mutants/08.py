@@ -4,7 +4,7 @@ MUTANTS = [
      "return (uv - 0.5 / float(texels)) / (1.0 - 1.0 / float(texels));", "return (uv - 0.5 / float(texels)) * float(texels) / (float(texels) + 1.0);",
      "truth: texel maps are inverse of each other"),
     ("the way down to the lowest point counted once", "08_transmittance_lut/transmittance_lut.glsl",
-     "lowest_km, 0.0) * 2.0;", "lowest_km, 0.0);", "truth: the default table holds 1e-3 on every row"),
+     "lowest_km, 0.0) * 2.0 - upward", "lowest_km, 0.0) - upward", "truth: the default table holds 1e-3 on every row"),
     ("lengths in the table's map without h^2", "08_transmittance_lut/table_map.glsl",
      "sqrt(max((b_km - a_km) * (2.0 * ground_radius_km + b_km + a_km), 0.0))", "sqrt(max((b_km - a_km) * 2.0 * ground_radius_km, 0.0))",
      "truth: the default table holds 1e-3 on every row"),
