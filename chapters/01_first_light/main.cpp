@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
                              .try_next = "./welkin run 02   (the same image in a window)",
                              .display = app::Display::raw,
                              .standard_views = {{"noon", "horizon"}},
+                             .still_passes = {"first light", "display"},
                              .make = [](const app::Context& context) { return std::make_unique<FirstLight>(context); }};
   return app::run(argc, argv, chapter);
   // [/chapter]

@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
       .display = app::Display::raw,
       .standard_views = {{"noon", "horizon"}},
       .window = open_window_system,
+      .still_passes = {"first light", "display"},
       .make = [](const app::Context& context) { return std::make_unique<FirstLight>(context); }};
   return app::run(argc, argv, chapter);
   // [/chapter]

@@ -41,6 +41,7 @@ int main(int argc, char** argv) {
       .reference = {{"sky.method", "per_pixel"}, {"phase.detail", "anisotropic"}},
       .standard_views = {{"noon", "horizon"}, {"sunset", "sun"}, {"orbit", "limb"}},
       .window = open_window_system,
+      .extra_bytes = 4 << 20,
       .make = [](const app::Context& context) { return std::make_unique<ConstantSkyProgram>(context); }};
   return app::run(argc, argv, chapter);
   // [/chapter]

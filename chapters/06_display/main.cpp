@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
       .standard_views =
           {{"noon", "horizon"}, {"sunset", "sun"}, {"twilight", "glow"}, {"orbit", "limb"}, {"alien", "horizon"}},
       .window = open_window_system,
+      .still_passes = {"march", "histogram", "exposure", "display"},
       .effects = {air(), single_scattering(), exposure(), display()},
       .probe = probe_single_scattering};
   return app::run(argc, argv, chapter);

@@ -20,6 +20,8 @@ int main(int argc, char** argv) {
       .standard_views =
           {{"noon", "horizon"}, {"sunset", "sun"}, {"twilight", "glow"}, {"orbit", "limb"}, {"alien", "horizon"}},
       .window = open_window_system,
+      .still_passes = {"trace", "resolve", "histogram", "exposure", "display"},
+      .extra_bytes = 320 * 180 * 64 + (64 << 10),
       .effects = {paths(), exposure(), display()},
       .probe = probe_paths};
   return app::run(argc, argv, chapter);

@@ -24,6 +24,8 @@ int main(int argc, char** argv) {
       .standard_views =
           {{"noon", "horizon"}, {"sunset", "sun"}, {"twilight", "glow"}, {"orbit", "limb"}, {"alien", "horizon"}},
       .window = open_window_system,
+      .still_passes = {"march", "histogram", "exposure", "display"},
+      .extra_bytes = (2 << 20) + (64 << 10),
       .effects = {air(), transmittance_table(), table_march(), exposure(), display()},
       .probe = probe_table_march};
   return app::run(argc, argv, chapter);

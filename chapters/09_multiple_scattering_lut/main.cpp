@@ -27,6 +27,8 @@ int main(int argc, char** argv) {
       .standard_views =
           {{"noon", "horizon"}, {"sunset", "sun"}, {"twilight", "glow"}, {"orbit", "limb"}, {"alien", "horizon"}},
       .window = open_window_system,
+      .still_passes = {"march", "histogram", "exposure", "display"},
+      .extra_bytes = 1 << 20,
       .effects = {air(), multiple_scattering_table(), all_orders_march(), exposure(), display()},
       .probe = probe_all_orders};
   return app::run(argc, argv, chapter);

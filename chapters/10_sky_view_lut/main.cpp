@@ -24,6 +24,8 @@ int main(int argc, char** argv) {
       .standard_views =
           {{"noon", "horizon"}, {"sunset", "sun"}, {"twilight", "glow"}, {"orbit", "limb"}, {"alien", "horizon"}},
       .window = open_window_system,
+      .still_passes = {"sky", "histogram", "exposure", "display"},
+      .extra_bytes = 7 << 19,
       .effects = {air(), transmittance_table(), multiple_scattering_table(), sky_view(), sky(), exposure(), display()},
       .probe = probe_sky};
   return app::run(argc, argv, chapter);

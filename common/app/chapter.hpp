@@ -59,6 +59,9 @@ struct Chapter {
   std::string default_scene = "noon";
   std::vector<StandardView> standard_views;
   std::function<std::unique_ptr<WindowSystem>()> window;         // none: the chapter draws into files only
+  // What a still frame of scene noon may cost at 320x180: these passes, and so many bytes beside its two pictures.
+  std::vector<std::string> still_passes;
+  uint64_t extra_bytes = 64 << 10;
   std::vector<Effect> effects;                                   // of a frame, in order; their knobs are the chapter's
   ProbeFunction probe;                                           // radiance along rays, beside effects
   std::function<std::unique_ptr<Program>(const Context&)> make;  // instead of effects: a program of its own

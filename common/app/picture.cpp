@@ -57,6 +57,8 @@ void explain(const Session& session, const Program& program, Renderer& renderer,
   for (const gpu::PassTime& pass : renderer.pass_times())
     fmt::print("  {:<20} {:>10.3f} ms\n", pass.name, pass.milliseconds);
   fmt::print("{}", program.explain());
+  fmt::print("declared:\n  passes {}\n  bytes {}\n", fmt::join(session.chapter.still_passes, ", "),
+             session.chapter.extra_bytes);
   fmt::print("memory:\n");
   for (const gpu::Allocation& allocation : session.device.allocations())
     fmt::print("  {:<20} {:>12} bytes\n", allocation.name, allocation.bytes);
