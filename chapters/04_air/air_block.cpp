@@ -20,13 +20,15 @@ gpu::Constants air_constants(const Scene& scene) {
           {"MIE_PHASE", static_cast<int>(variant.mie_phase), true}};
 }
 
+std::string air_key(const Scene& scene) {
+  const AirVariant variant = air_variant(scene);
+  return fmt::format("{} {} {} {}", variant.rayleigh, variant.mie, variant.ozone, variant.mie_phase);
+}
+
 // [air]
 app::Effect air() {
   app::Effect effect{.name = "air", .chapter = 4};
-  effect.key = [](const Scene& scene, const Settings&) {
-    const AirVariant variant = air_variant(scene);
-    return fmt::format("{} {} {} {}", variant.rayleigh, variant.mie, variant.ozone, variant.mie_phase);
-  };
+  effect.key = [](const Scene& scene, const Settings&) { return air_key(scene); };
   effect.declare = [](app::Builder& builder, app::Board& board) {
     const graph::Resource block = builder.graph.add_buffer(
         "air", {.bytes = sizeof(interop::Atmosphere),

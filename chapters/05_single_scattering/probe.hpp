@@ -37,7 +37,7 @@ class ProbeRun {
  public:
   // most: rays there will be at once; more than 65,536 go in batches.
   ProbeRun(const app::Context& context, std::vector<app::Effect> effects, size_t most);
-  // camera: for tables of a place, filled from the first ray where `of_first_ray`.
+  // of_first_ray: the camera stands where the first ray begins, for tables of a place; all rays share it.
   std::vector<app::ProbeResult> run(std::span<const app::ProbeRay> rays, bool of_first_ray = false);
 
  private:

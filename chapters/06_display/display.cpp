@@ -120,26 +120,25 @@ static graph::Pass histogram_pass(const app::Context& context, graph::Resource p
 // Turns the counts into one number and follows it in time: the state is read and written, frame after frame.
 static graph::Pass exposure_pass(const app::Context& context, graph::Resource histogram, graph::Resource state) {
   graph::Pass pass{.name = "exposure", .changed = [](const app::Frame&) { return true; }};
-  pass.steps.push_back({.shader = "06_display/exposure.comp",
-                        .bindings = {{"Histogram", histogram}, {"State", state}},
-                        .record = [context, fresh = true](const graph::Recorder& r) mutable {
-                          const Settings& settings = context.settings;
-                          const auto number = [&](const char* knob) {
-                            return static_cast<float>(settings.number(knob));
-                          };
-                          const auto share = [&](const char* knob) {
-                            return static_cast<float>(adapted_share(r.frame.seconds, settings.number(knob)));
-                          };
-                          const bool first = std::exchange(fresh, false), snap = r.frame.index == 0 || first;
-                          r.push(ExposePush{.low = number("exposure.low"),
-                                            .high = number("exposure.high"),
-                                            .to_bright = share("exposure.to_bright_s"),
-                                            .to_dark = share("exposure.to_dark_s"),
-                                            .adaptation = number("exposure.adaptation"),
-                                            .fallback = static_cast<float>(kBaseLog2),
-                                            .snap = snap ? 1 : 0});
-                          r.dispatch(1);
-                        }});
+  pass.steps.push_back(
+      {.shader = "06_display/exposure.comp",
+       .bindings = {{"Histogram", histogram}, {"State", state}},
+       .record = [context, fresh = true](const graph::Recorder& r) mutable {
+         const Settings& settings = context.settings;
+         const auto number = [&](const char* knob) { return static_cast<float>(settings.number(knob)); };
+         const auto share = [&](const char* knob) {
+           return static_cast<float>(adapted_share(r.frame.seconds, settings.number(knob)));
+         };
+         const bool first = std::exchange(fresh, false), snap = r.frame.index == 0 || r.frame.cut || first;
+         r.push(ExposePush{.low = number("exposure.low"),
+                           .high = number("exposure.high"),
+                           .to_bright = share("exposure.to_bright_s"),
+                           .to_dark = share("exposure.to_dark_s"),
+                           .adaptation = number("exposure.adaptation"),
+                           .fallback = static_cast<float>(kBaseLog2),
+                           .snap = snap ? 1 : 0});
+         r.dispatch(1);
+       }});
   return pass;
 }
 // [/exposure_pass]

@@ -257,8 +257,10 @@ std::string GroundTruth::explain() const {
 }
 
 app::Effect paths() {
-  return app::drawn_by("paths", 7, path_knobs(),
-                       [](const app::Context& context) { return std::make_unique<GroundTruth>(context); });
+  app::Effect effect = app::drawn_by(
+      "paths", 7, path_knobs(), [](const app::Context& context) { return std::make_unique<GroundTruth>(context); });
+  effect.key = [](const Scene& scene, const Settings&) { return air_key(scene) + fmt::format(" {}", scene.sun.disc); };
+  return effect;
 }
 
 std::vector<app::ProbeResult> probe_paths(const app::Context& context, std::span<const app::ProbeRay> rays) {

@@ -2,8 +2,8 @@
 // after it.
 //
 // A pass that looks it up binds "sky_view_table"; its shader defines SKY_VIEW_BINDING and the constant SKY_VIEW_UNIT,
-// and includes 10_sky_view_lut/sky_view.glsl. It asks serves() of the frame's altitude first: where that is false the
-// table is not kept, and the direct march of chapter 09 takes its place.
+// and includes 10_sky_view_lut/sky_view.glsl. It asks sky_view_serves() of the frame's altitude first: where that is
+// false the table is not kept, and the direct march of chapter 09 takes its place.
 #pragma once
 
 #include <memory>

@@ -12,6 +12,14 @@ app::Effect lit_terrain() {
                       ? fmt::format("terrain, and signs in direction {}", *scene.terrain->signs_azimuth_deg)
                       : "terrain, no signs"};
   };
+  // Knobs of the froxels that the march per pixel is compiled with, too: without froxels nothing else tells of them.
+  effect.key = [](const Scene&, const Settings& settings) {
+    std::string key;
+    for (const char* knob : {"aerial.march_slices", "froxels.slices", "froxels.samples", "froxels.power",
+                             "terrain.edges", "terrain.detail"})
+      key += fmt::format("{} ", settings.number(knob));
+    return key;
+  };
   effect.declare = [](app::Builder& builder, app::Board& board) {
     const app::Context& context = builder.context;
     const TerrainMaps& maps = board.get<TerrainMaps>("terrain");

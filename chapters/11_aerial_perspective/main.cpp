@@ -29,7 +29,7 @@ int main(int argc, char** argv) {
                          {"alien", "horizon"}},
       .window = open_window_system,
       .still_passes = {"sky", "compose", "histogram", "exposure", "display"},
-      .extra_bytes = 29 << 20,
+      .extra_bytes = 34 << 20,
       .effects = {air(), transmittance_table(), multiple_scattering_table(), sky_view(), sky(), terrain(),
                   terrain_shadows(), aerial_perspective(), lit_terrain(), exposure(), display()},
       .probe = probe_sky};  // a ray of a probe has no place on the map: it sees chapter 10's sky

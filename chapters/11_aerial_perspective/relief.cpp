@@ -63,7 +63,7 @@ glm::dvec3 global_sun(const app::Frame& frame, double ground_radius_km) {
 void lift_out_of_ground(const TerrainMap& map, double ground_radius_km, CameraRays& camera, glm::dvec3& position_km) {
   const app::CameraPose pose{.position_km = position_km};
   const glm::dvec3 up = app::local_frame(pose, ground_radius_km).up;
-  const double below_km = height_at(map, up.x * ground_radius_km, up.y * ground_radius_km),
+  const double below_km = up.z <= 0.0 ? 0.0 : height_at(map, up.x * ground_radius_km, up.y * ground_radius_km),
                stands_km = app::altitude_km(pose, ground_radius_km);
   const double altitude_km = std::max(stands_km, below_km > 0.0 ? below_km + kEyes_km : 0.0);
   position_km += up * (altitude_km - stands_km);
@@ -211,17 +211,19 @@ app::Effect terrain_shadows() {
     const graph::Resource image = builder.graph.add_image("terrain shadows", {.size = {side, side}});
     board.offer(TerrainShadows{image});
 
-    const auto shadowed_from = std::make_shared<glm::dvec3>(0.0);  // the sun the map was made for
+    const auto shadows_of = [context, radius_km](const app::Frame& frame) {
+      return glm::dvec4(global_sun(frame, radius_km), glm::radians(context.scene.sun.angular_radius_deg));
+    };
+    const auto shadowed_from = std::make_shared<glm::dvec4>(0.0);  // the sun the map was made for
     graph::Step step = walking(maps, radius_km, "11_aerial_perspective/shadow.comp");
     step.bindings.push_back({"shadow_map", image});
-    step.record = [context, shadowed_from, radius_km, side](const graph::Recorder& r) {
-      *shadowed_from = global_sun(r.frame, radius_km);
-      r.push(ShadowPush{{*shadowed_from, glm::radians(context.scene.sun.angular_radius_deg)}})
-          .dispatch_over({side, side});
+    step.record = [shadows_of, shadowed_from, side](const graph::Recorder& r) {
+      *shadowed_from = shadows_of(r.frame);
+      r.push(ShadowPush{glm::vec4(*shadowed_from)}).dispatch_over({side, side});
     };
     graph::Pass pass{.name = "terrain shadows"};
-    pass.changed = [shadowed_from, radius_km](const app::Frame& frame) {
-      return glm::length(global_sun(frame, radius_km) - *shadowed_from) > 1e-6;
+    pass.changed = [shadows_of, shadowed_from](const app::Frame& frame) {
+      return glm::length(shadows_of(frame) - *shadowed_from) > 1e-6;
     };
     pass.steps.push_back(std::move(step));
     builder.graph.add(std::move(pass));

@@ -86,9 +86,8 @@ double hill(double x, double y, double extent_km, uint32_t seed) {
 template <typename Fill>
 void in_parallel(int rows, const Fill& fill) {
   const int parts = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 16);
-  std::vector<std::thread> threads;
+  std::vector<std::jthread> threads;  // joined at the end of the block
   for (int part = 0; part < parts; ++part) threads.emplace_back(fill, rows * part / parts, rows * (part + 1) / parts);
-  for (std::thread& thread : threads) thread.join();
 }
 
 std::vector<float> make_heights(const Terrain& terrain) {

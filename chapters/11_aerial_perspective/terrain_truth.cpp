@@ -21,6 +21,9 @@ struct SurfaceImages {
 // [surfaces]
 app::Effect first_surfaces() {
   app::Effect effect{.name = "first surfaces", .chapter = 11};
+  effect.wanted = [](const Scene& scene, const Settings&) -> app::Wanted {
+    return {scene.terrain.has_value(), "[terrain]"};
+  };
   effect.key = [](const Scene& scene, const Settings&) {
     return fmt::format("{}", scene.terrain->signs_azimuth_deg.value_or(-1.0));
   };
@@ -63,9 +66,10 @@ app::Effect traced_terrain() {
         {.accesses = {{images.normals, gpu::kComputeRead},
                       {images.albedos, gpu::kComputeRead},
                       {picture, gpu::kComputeWrite}},
-         .record = [tracer, images, picture, drawn_into = VkImage{VK_NULL_HANDLE}](const graph::Recorder& r) mutable {
+         .record = [tracer, images, picture, drawn_into = uint64_t{0}](const graph::Recorder& r) mutable {
            const gpu::Image& target = r.graph.image(picture);
-           if (std::exchange(drawn_into, target.handle) != target.handle) {
+           const uint64_t version = r.graph.version(picture);
+           if (std::exchange(drawn_into, version) != version) {
              tracer->set_target(target);
              tracer->set_surfaces({&r.graph.image(images.normals), &r.graph.image(images.albedos)});
            }

@@ -57,8 +57,7 @@ Timings time_frames(const Session& session, Renderer& renderer, uint32_t warm_up
   const Clock::time_point begin = Clock::now();
   for (uint32_t i = 0; i < warm_up || seconds_since(begin) < wait; ++i)
     draw_frame(session, renderer, session.options.path.empty() ? i : i % session.frame_count());
-  std::vector<std::string> names;
-  std::vector<std::vector<double>> per_pass;
+  std::vector<std::pair<std::string, std::vector<double>>> per_pass;  // one that skips frames keeps its own
   std::vector<double> gpu, wall;
   const Clock::time_point start = Clock::now();
   for (uint32_t i = 0; i < repeats; ++i) {
@@ -66,20 +65,18 @@ Timings time_frames(const Session& session, Renderer& renderer, uint32_t warm_up
     draw_frame(session, renderer, session.options.path.empty() ? warm_up + i : (warm_up + i) % session.frame_count());
     wall.push_back(std::chrono::duration<double, std::milli>(Clock::now() - before).count());
     double sum = 0.0;
-    const std::vector<gpu::PassTime> times = renderer.pass_times();
-    per_pass.resize(times.size());
-    names.clear();
-    for (size_t pass = 0; pass < times.size(); ++pass) {
-      per_pass[pass].push_back(times[pass].milliseconds);
-      names.push_back(times[pass].name);
-      sum += times[pass].milliseconds;
+    for (const gpu::PassTime& time : renderer.pass_times()) {
+      auto same =
+          std::find_if(per_pass.begin(), per_pass.end(), [&](const auto& pass) { return pass.first == time.name; });
+      if (same == per_pass.end()) same = per_pass.insert(same, {time.name, {}});
+      same->second.push_back(time.milliseconds);
+      sum += time.milliseconds;
     }
     gpu.push_back(sum);
     if (i >= 2 && seconds_since(start) > kTimedSeconds) break;
   }
   Timings timings{.gpu = measure::spread(gpu), .wall = measure::spread(wall)};
-  for (size_t pass = 0; pass < names.size(); ++pass)
-    timings.passes.push_back({names[pass], measure::spread(per_pass[pass])});
+  for (const auto& [name, milliseconds] : per_pass) timings.passes.push_back({name, measure::spread(milliseconds)});
   return timings;
 }
 
@@ -212,12 +209,11 @@ Exit run_sweep(const Session& session) {
     const Settings base = other.settings;
     const std::vector<std::vector<double>> ladder = ordered_by_pipeline(measure::ladder_settings(base), base);
     const std::unique_ptr<Program> program = other.session.make_program();
-    Renderer renderer(other.session.context, session.chapter, *program, size);
     const float exposure = static_cast<float>(kBaseExposure * std::exp2(other.scene.post.exposure_ev));
     const auto display = [&](const glm::vec3& value) { return image::display(value, exposure); };
 
     const Image reference = draw_reference(other, *program, size, standard.frame);
-    program->set_target(renderer.target());
+    Renderer renderer(other.session.context, session.chapter, *program, size);
 
     for (const std::vector<double>& values : ladder) {
       other.settings = measure::with_values(base, values);

@@ -62,7 +62,6 @@ class Renderer {
   Image picture();  // linear, with the fault --inject nan planted if asked
   Image8 displayed();
   VkExtent2D size() const { return targets_.picture.size; }
-  const gpu::Image& target() const { return targets_.picture; }
 
  private:
   Context context_;

@@ -56,19 +56,6 @@ ShaderModule module_of(const Device& device, const std::vector<uint32_t>& words)
   return ShaderModule(device, module);
 }
 
-// The bindings of all stages; one that two stages have is there once.
-void unite(NamedPipeline& pipeline, const ShaderInterface& interface) {
-  pipeline.push_constant_bytes = std::max(pipeline.push_constant_bytes, interface.push_constant_bytes);
-  for (const ShaderBinding& binding : interface.bindings) {
-    const auto same = std::find_if(pipeline.bindings.begin(), pipeline.bindings.end(),
-                                   [&](const ShaderBinding& b) { return b.slot == binding.slot; });
-    if (same == pipeline.bindings.end())
-      pipeline.bindings.push_back(binding);
-    else
-      same->stages |= binding.stages;
-  }
-}
-
 void make_layouts(const Device& device, NamedPipeline& pipeline) {
   std::vector<Binding> bindings;
   for (ShaderBinding& binding : pipeline.bindings) {
@@ -76,7 +63,8 @@ void make_layouts(const Device& device, NamedPipeline& pipeline) {
     bindings.push_back({binding.slot, binding.type, binding.stages});
   }
   pipeline.set_layout = create_set_layout(device, bindings);
-  pipeline.layout = create_pipeline_layout(device, pipeline.set_layout, pipeline.stages, pipeline.push_constant_bytes);
+  pipeline.layout =
+      create_pipeline_layout(device, pipeline.set_layout, VK_SHADER_STAGE_COMPUTE_BIT, pipeline.push_constant_bytes);
 }
 
 }  // namespace
@@ -101,57 +89,32 @@ void Pipelines::forget() {
   made_.clear();
 }
 
-std::shared_ptr<const NamedPipeline> Pipelines::get(const std::string& shader, const Constants& constants,
-                                                    const Raster* raster) {
+std::shared_ptr<const NamedPipeline> Pipelines::get(const std::string& shader, const Constants& constants) {
   std::string key = shader;
   for (const Constant& constant : constants) key += fmt::format(" {}={}", constant.name, bits_of(constant));
-  if (raster != nullptr)
-    key += fmt::format(" {} {} {}", raster->fragment_shader, static_cast<int>(raster->colour),
-                       static_cast<int>(raster->depth));
-  std::shared_ptr<const NamedPipeline>& kept = made_[key];
-  if (kept != nullptr) return kept;
+  const auto found = made_.find(key);
+  if (found != made_.end()) return found->second;
 
-  NamedPipeline pipeline{.shader = shader};
   const Stage& first = stage(shader);
-  unite(pipeline, first.interface);
-  pipeline.stages = first.interface.stage;
+  NamedPipeline pipeline{.shader = shader,
+                         .bindings = first.interface.bindings,
+                         .push_constant_bytes = first.interface.push_constant_bytes};
+  make_layouts(device_, pipeline);
   const Specialized special = specialize(shader, first.interface, constants);
   const VkSpecializationInfo info = special.info();
   const ShaderModule module = module_of(device_, first.words);  // needed only while the pipeline is made
-  std::vector<VkPipelineShaderStageCreateInfo> stages{{.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                                                       .stage = first.interface.stage,
-                                                       .module = module,
-                                                       .pName = "main",
-                                                       .pSpecializationInfo = &info}};
-  ShaderModule second_module;
-  Specialized second_special;
-  VkSpecializationInfo second_info{};
-  if (raster != nullptr && !raster->fragment_shader.empty()) {
-    const Stage& second = stage(raster->fragment_shader);
-    unite(pipeline, second.interface);
-    pipeline.stages |= second.interface.stage;
-    second_special = specialize(raster->fragment_shader, second.interface, constants);
-    second_info = second_special.info();
-    second_module = module_of(device_, second.words);
-    stages.push_back(stages.front());
-    stages.back().stage = second.interface.stage, stages.back().module = second_module,
-    stages.back().pSpecializationInfo = &second_info;
-  }
-  make_layouts(device_, pipeline);
-  if (raster != nullptr) {
-    pipeline.bind_point = VK_PIPELINE_BIND_POINT_GRAPHICS;
-    pipeline.handle = create_raster_pipeline(device_, stages, pipeline.layout, raster->colour, raster->depth);
-  } else {
-    const VkComputePipelineCreateInfo compute{
-        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO, .stage = stages.front(), .layout = pipeline.layout};
-    VkPipeline handle = VK_NULL_HANDLE;
-    check(vkCreateComputePipelines(device_, VK_NULL_HANDLE, 1, &compute, nullptr, &handle), "vkCreateComputePipelines");
-    pipeline.handle = PipelineHandle(device_, handle);
-  }
-  device_.set_name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<uint64_t>(static_cast<VkPipeline>(pipeline.handle)),
-                   shader);
-  kept = std::make_shared<const NamedPipeline>(std::move(pipeline));
-  return kept;
+  const VkComputePipelineCreateInfo compute{.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+                                            .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                                                      .stage = VK_SHADER_STAGE_COMPUTE_BIT,
+                                                      .module = module,
+                                                      .pName = "main",
+                                                      .pSpecializationInfo = &info},
+                                            .layout = pipeline.layout};
+  VkPipeline handle = VK_NULL_HANDLE;
+  check(vkCreateComputePipelines(device_, VK_NULL_HANDLE, 1, &compute, nullptr, &handle), "vkCreateComputePipelines");
+  pipeline.handle = PipelineHandle(device_, handle);
+  device_.set_name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<uint64_t>(handle), shader);
+  return made_.emplace(key, std::make_shared<const NamedPipeline>(std::move(pipeline))).first->second;
 }
 
 }  // namespace welkin::gpu

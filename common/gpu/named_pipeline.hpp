@@ -24,17 +24,8 @@ using Constants = std::vector<Constant>;
 
 Constants joined(Constants first, const Constants& more);
 
-// What a graphics pipeline is beside its shaders: formats of what it draws into (UNDEFINED: none), reversed depth.
-struct Raster {
-  std::string fragment_shader;  // empty: depth only
-  VkFormat colour = VK_FORMAT_UNDEFINED, depth = VK_FORMAT_UNDEFINED;
-  bool operator==(const Raster&) const = default;
-};
-
 struct NamedPipeline {
   std::string shader;
-  VkPipelineBindPoint bind_point = VK_PIPELINE_BIND_POINT_COMPUTE;
-  VkShaderStageFlags stages = VK_SHADER_STAGE_COMPUTE_BIT;
   std::vector<ShaderBinding> bindings;
   uint32_t push_constant_bytes = 0;
   SetLayout set_layout;
@@ -49,10 +40,9 @@ inline constexpr const char* kViewBlock = "View";
 class Pipelines {
  public:
   explicit Pipelines(const Device& device) : device_(device) {}
-  // shader: as in load_spirv; the vertex shader with `raster`. Throws Error on a constant the shader does not have or
-  // that has another type there, saying which it has.
-  std::shared_ptr<const NamedPipeline> get(const std::string& shader, const Constants& constants,
-                                           const Raster* raster = nullptr);
+  // shader: as in load_spirv. Throws Error on a constant the shader does not have or that has another type there,
+  // saying which it has.
+  std::shared_ptr<const NamedPipeline> get(const std::string& shader, const Constants& constants);
   const ShaderInterface& interface_of(const std::string& shader);
   void forget();  // shaders were compiled anew
   size_t count() const { return made_.size(); }

@@ -72,57 +72,6 @@ ComputePipeline create_compute_pipeline(const Device& device, const std::string&
 }
 // [/compute]
 
-// [raster]
-PipelineHandle create_raster_pipeline(const Device& device, const std::vector<VkPipelineShaderStageCreateInfo>& stages,
-                                      VkPipelineLayout layout, VkFormat colour, VkFormat depth_format) {
-  const VkPipelineVertexInputStateCreateInfo input{.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
-  const VkPipelineInputAssemblyStateCreateInfo assembly{
-      .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
-      .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST};
-  const VkPipelineViewportStateCreateInfo viewport{
-      .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO, .viewportCount = 1, .scissorCount = 1};
-  const VkPipelineRasterizationStateCreateInfo raster{
-      .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
-      .polygonMode = VK_POLYGON_MODE_FILL,
-      .cullMode = VK_CULL_MODE_NONE,
-      .lineWidth = 1.0f};
-  const VkPipelineMultisampleStateCreateInfo samples{.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
-                                                     .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT};
-  const VkPipelineDepthStencilStateCreateInfo depth{.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
-                                                    .depthTestEnable = depth_format != VK_FORMAT_UNDEFINED,
-                                                    .depthWriteEnable = depth_format != VK_FORMAT_UNDEFINED,
-                                                    .depthCompareOp = VK_COMPARE_OP_GREATER};
-  const VkPipelineColorBlendAttachmentState blend{.colorWriteMask = 0xf};
-  const uint32_t colours = colour != VK_FORMAT_UNDEFINED ? 1 : 0;
-  const VkPipelineColorBlendStateCreateInfo blending{.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
-                                                     .attachmentCount = colours,
-                                                     .pAttachments = &blend};
-  const VkDynamicState states[]{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
-  const VkPipelineDynamicStateCreateInfo dynamic{
-      .sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO, .dynamicStateCount = 2, .pDynamicStates = states};
-  const VkPipelineRenderingCreateInfo rendering{.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
-                                                .colorAttachmentCount = colours,
-                                                .pColorAttachmentFormats = &colour,
-                                                .depthAttachmentFormat = depth_format};
-  const VkGraphicsPipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
-                                          .pNext = &rendering,
-                                          .stageCount = static_cast<uint32_t>(stages.size()),
-                                          .pStages = stages.data(),
-                                          .pVertexInputState = &input,
-                                          .pInputAssemblyState = &assembly,
-                                          .pViewportState = &viewport,
-                                          .pRasterizationState = &raster,
-                                          .pMultisampleState = &samples,
-                                          .pDepthStencilState = &depth,
-                                          .pColorBlendState = &blending,
-                                          .pDynamicState = &dynamic,
-                                          .layout = layout};
-  VkPipeline handle = VK_NULL_HANDLE;
-  check(vkCreateGraphicsPipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &handle), "vkCreateGraphicsPipelines");
-  return PipelineHandle(device, handle);
-}
-// [/raster]
-
 DescriptorSet create_descriptor_set(const Device& device, VkDescriptorSetLayout layout,
                                     const std::vector<Binding>& bindings) {
   std::vector<VkDescriptorPoolSize> sizes;

@@ -34,11 +34,6 @@ PipelineLayout create_pipeline_layout(const Device& device, VkDescriptorSetLayou
                                       uint32_t push_constant_bytes);
 ShaderModule create_shader_module(const Device& device, const std::string& shader);
 
-// A pipeline of triangles drawn over a viewport and scissor set at recording; formats UNDEFINED: no such attachment.
-// Depth is reversed: what is nearer has the larger depth. Back faces count.
-PipelineHandle create_raster_pipeline(const Device& device, const std::vector<VkPipelineShaderStageCreateInfo>& stages,
-                                      VkPipelineLayout layout, VkFormat colour, VkFormat depth);
-
 // One descriptor set with a pool of its own: allocated once, written once, never in a frame.
 struct DescriptorSet {
   DescriptorPool pool;

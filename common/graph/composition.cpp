@@ -276,9 +276,10 @@ Effect drawn_by(const std::string& name, int chapter, std::vector<Knob> knobs,
     graph::Pass pass{.name = "program", .changed = [](const Frame&) { return true; }, .times_itself = true};
     pass.steps.push_back(
         {.accesses = {{picture, gpu::kComputeWrite}},
-         .record = [program, picture, drawn_into = VkImage{VK_NULL_HANDLE}](const graph::Recorder& r) mutable {
+         .record = [program, picture, drawn_into = uint64_t{0}](const graph::Recorder& r) mutable {
            const gpu::Image& target = r.graph.image(picture);
-           if (std::exchange(drawn_into, target.handle) != target.handle) program->set_target(target);
+           const uint64_t version = r.graph.version(picture);
+           if (std::exchange(drawn_into, version) != version) program->set_target(target);
            const Frame& f = r.frame;
            program->draw({f.commands, target, f.camera, f.timer, f.index, f.seed, f.seconds, f.position_km, f.cut});
          }});

@@ -1,4 +1,4 @@
-// An effect: one thing a scene may call for, as data and four functions. A chapter's main.cpp names an ordered list of
+// An effect: one thing a scene may call for, as data and three functions. A chapter's main.cpp names an ordered list of
 // them.
 //
 // To add one, write a function that returns an Effect, and name it in a chapter's list: the composition builds it where

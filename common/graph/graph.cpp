@@ -23,7 +23,7 @@ void Recorder::push_bytes(const void* values, uint32_t bytes) const {
   if (bytes != pipeline->push_constant_bytes)
     fail("shader {}: its push constants are {} bytes, and {} were given", pipeline->shader,
          pipeline->push_constant_bytes, bytes);
-  vkCmdPushConstants(frame.commands, pipeline->layout, pipeline->stages, 0, bytes, values);
+  vkCmdPushConstants(frame.commands, pipeline->layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, bytes, values);
 }
 
 void Recorder::dispatch(uint32_t groups_x, uint32_t groups_y, uint32_t groups_z) const {
@@ -284,9 +284,9 @@ void Graph::record(const app::Frame& frame, uint32_t view_offset, Counted& count
       const VkDescriptorSet set = made.sets[made.alternates ? parity() : 0].handle;
       const bool views = std::any_of(made.pipeline->bindings.begin(), made.pipeline->bindings.end(),
                                      [](const gpu::ShaderBinding& b) { return b.name == gpu::kViewBlock; });
-      vkCmdBindPipeline(frame.commands, made.pipeline->bind_point, made.pipeline->handle);
+      vkCmdBindPipeline(frame.commands, VK_PIPELINE_BIND_POINT_COMPUTE, made.pipeline->handle);
       if (set != VK_NULL_HANDLE)
-        vkCmdBindDescriptorSets(frame.commands, made.pipeline->bind_point, made.pipeline->layout, 0, 1, &set,
+        vkCmdBindDescriptorSets(frame.commands, VK_PIPELINE_BIND_POINT_COMPUTE, made.pipeline->layout, 0, 1, &set,
                                 views ? 1 : 0, &view_offset);
     }
     step.record(recorder);

@@ -87,7 +87,6 @@ struct Recorder {
 struct Step {
   std::string shader{};  // none: `record` copies or updates
   gpu::Constants constants{};
-  std::optional<gpu::Raster> raster{};  // `shader` is then its vertex shader
   std::vector<Binding> bindings{};
   std::vector<Access> accesses{};
   std::function<void(const Recorder&)> record;
@@ -158,6 +157,8 @@ class Graph {
 
   bool has(Resource resource) const { return held_.contains(resource); }
   const gpu::Image& image(Resource resource) const;
+  // Another number whenever the image is another one: a driver may give a new image an old one's handle.
+  uint64_t version(Resource resource) const { return held_.at(resource).version; }
   const gpu::Buffer& buffer(Resource resource) const;
   const gpu::Image* find_image(const std::string& name) const;  // that exists now; nullptr: none
 
@@ -194,9 +195,10 @@ class Graph {
     const gpu::Buffer* buffer = nullptr;
     gpu::Use between_frames;
     bool output = false;
-    bool written_now = false;    // in the frame being recorded
-    bool last_valid = false;     // a history's: last frame's image is that
-    bool outdated = false;       // its content is gone or no longer right
+    bool written_now = false;  // in the frame being recorded
+    bool last_valid = false;   // a history's: last frame's image is that
+    bool outdated = false;     // its content is gone or no longer right
+    uint64_t version = 0;
     uint64_t written_frame = 0;  // of its last write, counted from 1
     std::array<std::vector<State>, 2> states;
   };
@@ -231,6 +233,7 @@ class Graph {
   Counted* writer_of(const Held& held);
   void visit(Counted& counted, std::map<const Counted*, int>& mark);
   void cull();
+  void make_all(VkExtent2D picture_size);
   void allocate(Held& held, VkExtent2D picture_size);
   void make(Counted& counted);
   void write_set(const Step& step, Made& made, uint32_t parity);
@@ -250,7 +253,7 @@ class Graph {
   gpu::Pipelines* pipelines_ = nullptr;
   bool drops_barriers_ = false;
   uint32_t owner_ = 0;
-  uint64_t frames_ = 0;
+  uint64_t frames_ = 0, versions_ = 0;
   bool cut_ = false;
   static constexpr uint32_t kNobody = ~0u;
   Resource next_ = 0;

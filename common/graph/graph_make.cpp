@@ -90,7 +90,7 @@ void Graph::replace(Resource resource, const gpu::Image* image, gpu::Use between
   held.kind = image != nullptr ? Kind::imported : Kind::image;
   held.image = image, held.between_frames = between_frames, held.own_images[0] = {};
   held.states[0].assign(held.states[0].size(), {});
-  held.outdated = true;
+  held.outdated = true, held.version = ++versions_;
 }
 
 const gpu::Image* Graph::image_of(const Held& held, bool second) {
@@ -132,10 +132,7 @@ void Graph::reflect(Counted& counted) {
     };
     for (const Access& access : step.accesses) add(access.resource, access.use, access.mip, access.last_frame);
     if (step.shader.empty()) continue;
-    std::vector<gpu::ShaderBinding> wanted = pipelines_->interface_of(step.shader).bindings;
-    if (step.raster && !step.raster->fragment_shader.empty())
-      for (const gpu::ShaderBinding& more : pipelines_->interface_of(step.raster->fragment_shader).bindings)
-        wanted.push_back(more);
+    const std::vector<gpu::ShaderBinding>& wanted = pipelines_->interface_of(step.shader).bindings;
     std::vector<std::string> names;
     for (const gpu::ShaderBinding& binding : wanted) {
       names.push_back(binding.name);
@@ -157,14 +154,29 @@ void Graph::reflect(Counted& counted) {
 
 // [compile]
 void Graph::compile(VkExtent2D picture_size) {
+  order_.clear();
   for (const auto& counted : passes_) reflect(*counted);
   cull();
   if (device_ == nullptr) return;
+  try {
+    make_all(picture_size);
+  } catch (...) {
+    order_.clear();  // nothing half made is executed
+    throw;
+  }
+}
+
+void Graph::make_all(VkExtent2D picture_size) {
   std::vector<const Held*> used;
   size_t barriers = 0;
   for (Counted* counted : order_)
     for (const Made& step : counted->steps)
       for (const Touch& touch : step.touches) used.push_back(touch.held), barriers += touch.mips;
+  const auto of_picture = [](const Held* held) {
+    return (held->kind == Kind::image || held->kind == Kind::history) && held->info.size.width == 0;
+  };
+  if (picture_size.width == 0 && std::any_of(used.begin(), used.end(), of_picture))
+    return order_.clear();  // it follows
   for (auto& [resource, held] : held_) {
     if (std::find(used.begin(), used.end(), &held) != used.end())
       allocate(held, picture_size);
@@ -195,8 +207,7 @@ void Graph::allocate(Held& held, VkExtent2D picture_size) {
     image = gpu::create_image(*device_, held.name, size, held.info.format, held.info.usage, held.info.depth,
                               held.info.mips, held.info.layers);
     held.states[i].assign(held.info.mips, {});
-    held.outdated = true;
-    held.written_frame = 0;
+    held.outdated = true, held.written_frame = 0, held.version = ++versions_;
   }
 }
 // [/compile]
@@ -206,7 +217,7 @@ void Graph::make(Counted& counted) {
     const Step& step = counted.pass.steps[i];
     Made& made = counted.steps[i];
     if (step.shader.empty()) continue;
-    const auto pipeline = pipelines_->get(step.shader, step.constants, step.raster ? &*step.raster : nullptr);
+    const auto pipeline = pipelines_->get(step.shader, step.constants);
     made.alternates = std::any_of(step.bindings.begin(), step.bindings.end(),
                                   [&](const Binding& b) { return held_of(b.resource).kind == Kind::history; });
     const bool other_layout = made.pipeline != pipeline;

@@ -134,13 +134,14 @@ Scene load_scene(const std::string& name_or_file, const fs::path& scenes_directo
 }
 
 std::string portable_path(const std::string& file, const fs::path& directory) {
+  if (file.empty()) return {};
   std::error_code error;
   const fs::path from = fs::absolute(directory, error).lexically_normal(),
                  to = fs::absolute(file, error).lexically_normal();
   const auto split = std::mismatch(from.begin(), from.end(), to.begin(), to.end()).first;
   const std::string way = to.lexically_relative(from).string();
   const bool near = std::distance(from.begin(), split) > 1;  // more than the root in common
-  return file.empty() || (near && way.size() <= 400 && one_line(way) == way) ? way : to.filename().string();
+  return (near && way.size() <= 400 && one_line(way) == way) ? way : to.filename().string();
 }
 
 std::string write_scene(const Scene& scene) {

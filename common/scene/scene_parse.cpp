@@ -1,5 +1,5 @@
 // Reading a scene: strict TOML. Every message is one line with file:line:column (both counted from 1) and what is
-// accepted. An absent key leaves the default. What a file may say is the table of scene_table.cpp.
+// accepted. An absent key leaves the default. What a file may say is the table of fields.hpp.
 #include <cmath>
 
 #include "common/scene/fields.hpp"

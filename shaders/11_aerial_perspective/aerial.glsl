@@ -116,8 +116,7 @@ RayLight march_to(MethodAir method, AirRay ray, ScatteringTowardsEye scattering,
 }
 // [/march_to]
 
-// A ray for the march to something inside the air: as enter_air(), but it does not end at the ground, whose mesh lies a
-// little above or below the sphere.
+// What scatters towards the eye along a ray: the phase functions, which do not change on it.
 ScatteringTowardsEye scattering_along(Atmosphere atmosphere, vec3 view, vec3 sun) {
   return scattering_towards_eye(atmosphere, one_minus_cosine(view, sun), one_minus_cosine(view, sun * -1.0));
 }

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "chapters/06_display/display.hpp"
+#include "chapters/07_ground_truth/ground_truth.hpp"
 #include "common/app/session.hpp"
 #include "tests/gpu/10_sky.hpp"
 #include "tests/gpu/11_parts.hpp"
@@ -128,6 +129,31 @@ TEST_CASE("keys decide what is made anew: a display knob no table, the air what 
   frame.draw();
   CHECK(declared() == Counts{2, 2, 2, 2, 2, 2, 3, 2});
   CHECK(ran() == Counts{3, 3, 4, 2, 4});
+}
+
+TEST_CASE("a program drawn by an effect follows its target and the scene") {
+  std::vector<app::Effect> effects{paths()};
+  Scene scene = scene_named("noon");
+  Settings settings(app::knobs_of(effects, 7));
+  const std::string no_fault;
+  const app::Context context{device(), scene, settings, no_fault};
+  const app::Chapter chapter;
+  const app::CameraPose pose = app::pose_of(scene.views[0], 6360.0);
+  app::Composition program(context, effects);
+  const auto drawn = [&](app::Composition& by, VkExtent2D size) {
+    app::Renderer renderer(context, chapter, by, size);
+    renderer.draw(pose, 0.0, 1, 0);
+    return renderer.picture();
+  };
+  const auto fresh = [&](VkExtent2D size) {
+    app::Composition other(context, effects);
+    return drawn(other, size);
+  };
+  // A picture of one workgroup, gone again, whose handle the next one may get.
+  for (const VkExtent2D size : {VkExtent2D{8, 8}, VkExtent2D{64, 36}, VkExtent2D{8, 8}, VkExtent2D{48, 27}})
+    CHECK(drawn(program, size).pixels == fresh(size).pixels);
+  scene.medium("mie")->phase = Phase::draine;
+  CHECK(drawn(program, {16, 9}).pixels == fresh({16, 9}).pixels);
 }
 
 TEST_CASE("each effect left out leaves no pass, no byte, no variant, no knob") {
