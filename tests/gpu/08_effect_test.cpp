@@ -152,7 +152,7 @@ TEST_CASE("a program drawn by an effect follows its target and the scene") {
   // A picture of one workgroup, gone again, whose handle the next one may get.
   for (const VkExtent2D size : {VkExtent2D{8, 8}, VkExtent2D{64, 36}, VkExtent2D{8, 8}, VkExtent2D{48, 27}})
     CHECK(drawn(program, size).pixels == fresh(size).pixels);
-  scene.medium("mie")->phase = Phase::draine;
+  scene.medium("mie")->phase = welkin::Phase::draine;
   CHECK(drawn(program, {16, 9}).pixels == fresh({16, 9}).pixels);
 }
 

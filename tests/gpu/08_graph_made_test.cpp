@@ -254,9 +254,9 @@ TEST_CASE("08 hard: two hundred frames of resizes, dropped scenes and effects on
         settings.set(knob, values[random.next() % values.size()]);
       }
     }
-    renderer->draw(
-        app::pose_of({.altitude_km = altitude_km, .azimuth_deg = double(frame), .elevation_deg = -5.0}, 6360.0), 0.0, 1,
-        frame);
+    const app::CameraPose pose =
+        app::pose_of({.altitude_km = altitude_km, .azimuth_deg = double(frame), .elevation_deg = -5.0}, 6360.0);
+    renderer->draw(pose, 0.0, 1, frame);
     if (frame % 10 == 9) {  // what was made anew piece by piece draws what a program made at once draws
       const Image got = renderer->picture();
       app::Composition fresh(context, whole_frame());
