@@ -168,12 +168,19 @@ struct Loop {
     Settings settings;
     load_scene_and_settings(session.chapter, file, {}, {}, scene, settings);  // throws before anything here changes
     swapchain.wait_for_all_frames();
-    session.scene = std::move(scene);
-    session.settings = std::move(settings);
+    std::swap(session.scene, scene);
+    std::swap(session.settings, settings);
+    try {
+      drawing.follow();
+    } catch (...) {  // its height map is missing, its images do not fit: the old scene stays
+      std::swap(session.scene, scene);
+      std::swap(session.settings, settings);
+      drawing.follow();
+      throw;
+    }
     pose = pose_of(session.scene.view(""), session.scene.planet.ground_radius_km);
     state.view_now = session.scene.view("").name;
     played_s.reset();  // a path of the scene before
-    drawing.follow();
     cut = true;
   }
 
@@ -298,8 +305,6 @@ bool Loop::draw(uint32_t index, double seconds) {
   if (slot == nullptr) return false;
   state.times = slot->timer.read();  // of this slot's earlier frame, finished now
   const VkExtent2D size = swapchain.size();
-  const CameraRays camera =
-      camera_rays(pose, session.scene, session.scene.time_s, {size.width, size.height}, session.options.seed, index);
   state.changed.clear();
   panel.layout(session.chapter, session.scene, session.settings, session.device, pose, state);
   if (!state.changed.empty()) apply_scene_knobs(session.settings, session.scene);
@@ -307,6 +312,9 @@ bool Loop::draw(uint32_t index, double seconds) {
     swapchain.wait_for_all_frames();
     attempt([&] { drawing.follow(); });
   }
+  // After the panel: what is drawn is what a picture saved next says it shows.
+  const CameraRays camera =
+      camera_rays(pose, session.scene, session.scene.time_s, {size.width, size.height}, session.options.seed, index);
   gpu::begin_commands(slot->commands);
   drawing.record({slot->commands, targets.picture, camera, slot->timer, index, session.options.seed, seconds,
                   pose.position_km, std::exchange(cut, false)});

@@ -152,9 +152,9 @@ class Window(WelkinCase):
     def test_the_slider_of_the_time_is_saved(self):
         """The moment that is shown is the one that is restored: not that of --time, nor that of the scene."""
         self.open("05_single_scattering", "--size", "480x640", "--scene", "sunset", "--set", "view.steps=4", "--time", "600")
-        for y in range(430, 20, -12):  # wherever the panel has it
-            self.xdotool("mousemove", "--window", self.window, "110", str(y), "sleep", "0.2", "mousedown", "1", "sleep", "0.2",
-                         "mousemove", "--window", self.window, "70", str(y), "sleep", "0.2", "mouseup", "1", "sleep", "0.2")
+        for y in (136, 130, 142, 124):  # where the panel has it, or a little beside
+            self.xdotool("mousemove", "--window", self.window, "188", str(y), "sleep", "0.2", "mousedown", "1", "sleep", "0.2",
+                         "mousemove", "--window", self.window, "140", str(y), "sleep", "0.2", "mouseup", "1", "sleep", "0.2")
             saved = self.saved()
             moved = re.search(r"^time_s = (-\S+)$", carried(saved), re.M)
             if moved:
