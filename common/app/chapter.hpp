@@ -58,7 +58,7 @@ struct Chapter {
   std::optional<Truth> truth;                                  // what a window measures its view against
   std::string default_scene = "noon";
   std::vector<StandardView> standard_views;
-  std::function<std::unique_ptr<WindowSystem>()> window;         // none: the chapter draws into files only
+  std::function<std::unique_ptr<WindowSystem>()> window;  // none: the chapter draws into files only
   // What a still frame of scene noon may cost at 320x180: these passes, and so many bytes beside its two pictures.
   std::vector<std::string> still_passes;
   uint64_t extra_bytes = 64 << 10;
