@@ -127,7 +127,7 @@ class Cost(WelkinCase):
     def test_passes(self):
         text = self.noon()[0].split("passes:\n", 1)[1].split("memory:\n")[0]
         names = [line.rsplit(None, 2)[0].strip() for line in text.splitlines() if line.endswith(" ms")]
-        declared = re.search(r"^  passes (.*)$", text, re.M)
+        declared = re.search(r"^  passes (.+)$", text, re.M)
         if declared:
             self.assertEqual(names, declared.group(1).split(", "))
         self.assertLessEqual(len(names), 5)
