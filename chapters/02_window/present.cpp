@@ -1,8 +1,6 @@
 // The present pass. See present.hpp.
 #include "chapters/02_window/present.hpp"
 
-#include <array>
-
 namespace welkin {
 namespace {
 
@@ -20,60 +18,9 @@ const std::vector<gpu::Binding> kBindings{{0, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 
 PresentPass::PresentPass(const gpu::Device& device, VkFormat format)
     : set_layout_(gpu::create_set_layout(device, kBindings)),
       layout_(gpu::create_pipeline_layout(device, set_layout_, VK_SHADER_STAGE_FRAGMENT_BIT, 0)),
-      set_(gpu::create_descriptor_set(device, set_layout_, kBindings)) {
-  const gpu::ShaderModule vertex = gpu::create_shader_module(device, "02_window/present.vert");
-  const gpu::ShaderModule fragment = gpu::create_shader_module(device, "02_window/present.frag");
-  const std::array<VkPipelineShaderStageCreateInfo, 2> stages{
-      VkPipelineShaderStageCreateInfo{.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                                      .stage = VK_SHADER_STAGE_VERTEX_BIT,
-                                      .module = vertex,
-                                      .pName = "main"},
-      VkPipelineShaderStageCreateInfo{.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                                      .stage = VK_SHADER_STAGE_FRAGMENT_BIT,
-                                      .module = fragment,
-                                      .pName = "main"}};
-  const VkPipelineVertexInputStateCreateInfo vertices{.sType =
-                                                          VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
-  const VkPipelineInputAssemblyStateCreateInfo assembly{
-      .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
-      .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST};
-  const VkPipelineViewportStateCreateInfo viewport{
-      .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO, .viewportCount = 1, .scissorCount = 1};
-  const VkPipelineRasterizationStateCreateInfo raster{
-      .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
-      .polygonMode = VK_POLYGON_MODE_FILL,
-      .cullMode = VK_CULL_MODE_NONE,
-      .lineWidth = 1.0f};
-  const VkPipelineMultisampleStateCreateInfo samples{.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
-                                                     .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT};
-  const VkPipelineColorBlendAttachmentState all_channels{.colorWriteMask = 0xF};
-  const VkPipelineColorBlendStateCreateInfo blend{.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
-                                                  .attachmentCount = 1,
-                                                  .pAttachments = &all_channels};
-  const std::array<VkDynamicState, 2> dynamic_states{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
-  const VkPipelineDynamicStateCreateInfo dynamic{.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
-                                                 .dynamicStateCount = static_cast<uint32_t>(dynamic_states.size()),
-                                                 .pDynamicStates = dynamic_states.data()};
-  const VkPipelineRenderingCreateInfo rendering{.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
-                                                .colorAttachmentCount = 1,
-                                                .pColorAttachmentFormats = &format};
-  const VkGraphicsPipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
-                                          .pNext = &rendering,
-                                          .stageCount = static_cast<uint32_t>(stages.size()),
-                                          .pStages = stages.data(),
-                                          .pVertexInputState = &vertices,
-                                          .pInputAssemblyState = &assembly,
-                                          .pViewportState = &viewport,
-                                          .pRasterizationState = &raster,
-                                          .pMultisampleState = &samples,
-                                          .pColorBlendState = &blend,
-                                          .pDynamicState = &dynamic,
-                                          .layout = layout_};
-  VkPipeline handle = VK_NULL_HANDLE;
-  gpu::check(vkCreateGraphicsPipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &handle),
-             "vkCreateGraphicsPipelines");
-  pipeline_ = gpu::PipelineHandle(device, handle);
-}
+      pipeline_(
+          gpu::create_graphics_pipeline(device, "02_window/present.vert", "02_window/present.frag", layout_, format)),
+      set_(gpu::create_descriptor_set(device, set_layout_, kBindings)) {}
 
 void PresentPass::set_image(const gpu::Device& device, const gpu::Image& displayed) {
   gpu::write_storage_image(device, set_, 0, displayed);

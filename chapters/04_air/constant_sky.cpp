@@ -1,7 +1,6 @@
 // Recording the constant-density sky. See constant_sky.hpp.
 #include "chapters/04_air/constant_sky.hpp"
 
-#include <array>
 #include <cstring>
 
 #include "common/gpu/shader_file.hpp"
@@ -201,63 +200,8 @@ void ConstantSkyProgram::make_sphere_pipeline(const gpu::Specialization& constan
   const gpu::Device& device = context_.device;
   sphere_set_layout_ = gpu::create_set_layout(device, kSphereBindings);
   sphere_layout_ = gpu::create_pipeline_layout(device, sphere_set_layout_, kSphereStages, sizeof(CameraRays));
-  std::vector<VkSpecializationMapEntry> entries;
-  for (uint32_t i = 0; i < constants.size(); ++i) entries.push_back({.constantID = i, .offset = 4 * i, .size = 4});
-  const VkSpecializationInfo special{static_cast<uint32_t>(entries.size()), entries.data(),
-                                     constants.size() * sizeof(uint32_t), constants.data()};
-  const gpu::ShaderModule vertex = gpu::create_shader_module(device, "04_air/sky_sphere.vert");
-  const gpu::ShaderModule fragment = gpu::create_shader_module(device, "04_air/sky_sphere.frag");
-  const auto stage = [&](VkShaderStageFlagBits which, VkShaderModule module) {
-    return VkPipelineShaderStageCreateInfo{.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                                           .stage = which,
-                                           .module = module,
-                                           .pName = "main",
-                                           .pSpecializationInfo = &special};
-  };
-  const std::array stages{stage(VK_SHADER_STAGE_VERTEX_BIT, vertex), stage(VK_SHADER_STAGE_FRAGMENT_BIT, fragment)};
-  // No vertex input: the vertex shader reads its vertex from a storage buffer. No culling: the sphere is seen from
-  // inside. No depth.
-  const VkPipelineVertexInputStateCreateInfo input{.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
-  const VkPipelineInputAssemblyStateCreateInfo assembly{
-      .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
-      .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST};
-  const VkPipelineViewportStateCreateInfo viewport{
-      .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO, .viewportCount = 1, .scissorCount = 1};
-  const VkPipelineRasterizationStateCreateInfo raster{
-      .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
-      .polygonMode = VK_POLYGON_MODE_FILL,
-      .cullMode = VK_CULL_MODE_NONE,
-      .lineWidth = 1.0f};
-  const VkPipelineMultisampleStateCreateInfo samples{.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
-                                                     .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT};
-  const VkPipelineColorBlendAttachmentState all_channels{.colorWriteMask = 0xF};
-  const VkPipelineColorBlendStateCreateInfo blend{.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
-                                                  .attachmentCount = 1,
-                                                  .pAttachments = &all_channels};
-  const std::array dynamic_states{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
-  const VkPipelineDynamicStateCreateInfo dynamic{.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
-                                                 .dynamicStateCount = static_cast<uint32_t>(dynamic_states.size()),
-                                                 .pDynamicStates = dynamic_states.data()};
-  const VkFormat format = VK_FORMAT_R32G32B32A32_SFLOAT;
-  const VkPipelineRenderingCreateInfo rendering{.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
-                                                .colorAttachmentCount = 1,
-                                                .pColorAttachmentFormats = &format};
-  const VkGraphicsPipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
-                                          .pNext = &rendering,
-                                          .stageCount = static_cast<uint32_t>(stages.size()),
-                                          .pStages = stages.data(),
-                                          .pVertexInputState = &input,
-                                          .pInputAssemblyState = &assembly,
-                                          .pViewportState = &viewport,
-                                          .pRasterizationState = &raster,
-                                          .pMultisampleState = &samples,
-                                          .pColorBlendState = &blend,
-                                          .pDynamicState = &dynamic,
-                                          .layout = sphere_layout_};
-  VkPipeline handle = VK_NULL_HANDLE;
-  gpu::check(vkCreateGraphicsPipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &handle),
-             "vkCreateGraphicsPipelines");
-  sphere_pipeline_ = gpu::PipelineHandle(device, handle);
+  sphere_pipeline_ = gpu::create_graphics_pipeline(device, "04_air/sky_sphere.vert", "04_air/sky_sphere.frag",
+                                                   sphere_layout_, VK_FORMAT_R32G32B32A32_SFLOAT, constants);
 }
 // [/pipeline]
 

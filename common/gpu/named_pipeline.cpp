@@ -47,15 +47,6 @@ Specialized specialize(const std::string& shader, const ShaderInterface& interfa
   return result;
 }
 
-ShaderModule module_of(const Device& device, const std::vector<uint32_t>& words) {
-  const VkShaderModuleCreateInfo info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-                                      .codeSize = words.size() * sizeof(uint32_t),
-                                      .pCode = words.data()};
-  VkShaderModule module = VK_NULL_HANDLE;
-  check(vkCreateShaderModule(device, &info, nullptr, &module), "vkCreateShaderModule");
-  return ShaderModule(device, module);
-}
-
 void make_layouts(const Device& device, NamedPipeline& pipeline) {
   std::vector<Binding> bindings;
   for (ShaderBinding& binding : pipeline.bindings) {
@@ -101,19 +92,7 @@ std::shared_ptr<const NamedPipeline> Pipelines::get(const std::string& shader, c
                          .push_constant_bytes = first.interface.push_constant_bytes};
   make_layouts(device_, pipeline);
   const Specialized special = specialize(shader, first.interface, constants);
-  const VkSpecializationInfo info = special.info();
-  const ShaderModule module = module_of(device_, first.words);  // needed only while the pipeline is made
-  const VkComputePipelineCreateInfo compute{.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-                                            .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                                                      .stage = VK_SHADER_STAGE_COMPUTE_BIT,
-                                                      .module = module,
-                                                      .pName = "main",
-                                                      .pSpecializationInfo = &info},
-                                            .layout = pipeline.layout};
-  VkPipeline handle = VK_NULL_HANDLE;
-  check(vkCreateComputePipelines(device_, VK_NULL_HANDLE, 1, &compute, nullptr, &handle), "vkCreateComputePipelines");
-  pipeline.handle = PipelineHandle(device_, handle);
-  device_.set_name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<uint64_t>(handle), shader);
+  pipeline.handle = create_compute_handle(device_, shader, first.words, special.info(), pipeline.layout);
   return made_.emplace(key, std::make_shared<const NamedPipeline>(std::move(pipeline))).first->second;
 }
 

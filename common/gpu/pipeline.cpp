@@ -1,9 +1,29 @@
 // Pipelines and descriptor sets. See pipeline.hpp.
 #include "common/gpu/pipeline.hpp"
 
+#include <array>
+
 #include "common/gpu/shader_file.hpp"
 
 namespace welkin::gpu {
+namespace {
+
+// Value i of a Specialization stands 4 i bytes into its data.
+std::vector<VkSpecializationMapEntry> entries_of(const Specialization& specialization) {
+  std::vector<VkSpecializationMapEntry> entries;
+  for (uint32_t i = 0; i < specialization.size(); ++i) entries.push_back({.constantID = i, .offset = 4 * i, .size = 4});
+  return entries;
+}
+
+VkSpecializationInfo info_of(const std::vector<VkSpecializationMapEntry>& entries,
+                             const Specialization& specialization) {
+  return {.mapEntryCount = static_cast<uint32_t>(entries.size()),
+          .pMapEntries = entries.data(),
+          .dataSize = specialization.size() * sizeof(uint32_t),
+          .pData = specialization.data()};
+}
+
+}  // namespace
 
 SetLayout create_set_layout(const Device& device, const std::vector<Binding>& bindings) {
   std::vector<VkDescriptorSetLayoutBinding> entries;
@@ -31,8 +51,7 @@ PipelineLayout create_pipeline_layout(const Device& device, VkDescriptorSetLayou
   return PipelineLayout(device, layout);
 }
 
-ShaderModule create_shader_module(const Device& device, const std::string& shader) {
-  const std::vector<uint32_t> words = load_spirv(shader);
+ShaderModule create_shader_module(const Device& device, const std::vector<uint32_t>& words) {
   const VkShaderModuleCreateInfo info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
                                       .codeSize = words.size() * sizeof(uint32_t),
                                       .pCode = words.data()};
@@ -42,6 +61,22 @@ ShaderModule create_shader_module(const Device& device, const std::string& shade
 }
 
 // [compute]
+PipelineHandle create_compute_handle(const Device& device, const std::string& name, const std::vector<uint32_t>& words,
+                                     const VkSpecializationInfo& constants, VkPipelineLayout layout) {
+  const ShaderModule module = create_shader_module(device, words);  // needed only while the pipeline is made
+  const VkComputePipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+                                         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                                                   .stage = VK_SHADER_STAGE_COMPUTE_BIT,
+                                                   .module = module,
+                                                   .pName = "main",
+                                                   .pSpecializationInfo = &constants},
+                                         .layout = layout};
+  VkPipeline handle = VK_NULL_HANDLE;
+  check(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &handle), "vkCreateComputePipelines");
+  device.set_name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<uint64_t>(handle), name);
+  return PipelineHandle(device, handle);
+}
+
 ComputePipeline create_compute_pipeline(const Device& device, const std::string& shader, std::vector<Binding> bindings,
                                         uint32_t push_constant_bytes, const Specialization& specialization) {
   ComputePipeline pipeline;
@@ -49,28 +84,68 @@ ComputePipeline create_compute_pipeline(const Device& device, const std::string&
   pipeline.layout =
       create_pipeline_layout(device, pipeline.set_layout, VK_SHADER_STAGE_COMPUTE_BIT, push_constant_bytes);
   pipeline.bindings = std::move(bindings);
-
-  std::vector<VkSpecializationMapEntry> entries;
-  for (uint32_t i = 0; i < specialization.size(); ++i) entries.push_back({.constantID = i, .offset = 4 * i, .size = 4});
-  const VkSpecializationInfo constants{.mapEntryCount = static_cast<uint32_t>(entries.size()),
-                                       .pMapEntries = entries.data(),
-                                       .dataSize = specialization.size() * sizeof(uint32_t),
-                                       .pData = specialization.data()};
-  const ShaderModule module = create_shader_module(device, shader);  // needed only while the pipeline is made
-  const VkComputePipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-                                         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                                                   .stage = VK_SHADER_STAGE_COMPUTE_BIT,
-                                                   .module = module,
-                                                   .pName = "main",
-                                                   .pSpecializationInfo = &constants},
-                                         .layout = pipeline.layout};
-  VkPipeline handle = VK_NULL_HANDLE;
-  check(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &handle), "vkCreateComputePipelines");
-  pipeline.handle = PipelineHandle(device, handle);
-  device.set_name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<uint64_t>(handle), shader);
+  const std::vector<VkSpecializationMapEntry> entries = entries_of(specialization);
+  pipeline.handle =
+      create_compute_handle(device, shader, load_spirv(shader), info_of(entries, specialization), pipeline.layout);
   return pipeline;
 }
 // [/compute]
+
+PipelineHandle create_graphics_pipeline(const Device& device, const std::string& vertex_shader,
+                                        const std::string& fragment_shader, VkPipelineLayout layout, VkFormat format,
+                                        const Specialization& specialization) {
+  const std::vector<VkSpecializationMapEntry> entries = entries_of(specialization);
+  const VkSpecializationInfo special = info_of(entries, specialization);
+  const ShaderModule vertex = create_shader_module(device, load_spirv(vertex_shader));
+  const ShaderModule fragment = create_shader_module(device, load_spirv(fragment_shader));
+  const auto stage = [&](VkShaderStageFlagBits which, VkShaderModule module) {
+    return VkPipelineShaderStageCreateInfo{.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                                           .stage = which,
+                                           .module = module,
+                                           .pName = "main",
+                                           .pSpecializationInfo = &special};
+  };
+  const std::array stages{stage(VK_SHADER_STAGE_VERTEX_BIT, vertex), stage(VK_SHADER_STAGE_FRAGMENT_BIT, fragment)};
+  const VkPipelineVertexInputStateCreateInfo input{.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
+  const VkPipelineInputAssemblyStateCreateInfo assembly{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
+      .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST};
+  const VkPipelineViewportStateCreateInfo viewport{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO, .viewportCount = 1, .scissorCount = 1};
+  const VkPipelineRasterizationStateCreateInfo raster{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
+      .polygonMode = VK_POLYGON_MODE_FILL,
+      .cullMode = VK_CULL_MODE_NONE,
+      .lineWidth = 1.0f};
+  const VkPipelineMultisampleStateCreateInfo samples{.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
+                                                     .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT};
+  const VkPipelineColorBlendAttachmentState all_channels{.colorWriteMask = 0xF};
+  const VkPipelineColorBlendStateCreateInfo blend{.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
+                                                  .attachmentCount = 1,
+                                                  .pAttachments = &all_channels};
+  const std::array dynamic_states{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
+  const VkPipelineDynamicStateCreateInfo dynamic{.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
+                                                 .dynamicStateCount = static_cast<uint32_t>(dynamic_states.size()),
+                                                 .pDynamicStates = dynamic_states.data()};
+  const VkPipelineRenderingCreateInfo rendering{.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
+                                                .colorAttachmentCount = 1,
+                                                .pColorAttachmentFormats = &format};
+  const VkGraphicsPipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
+                                          .pNext = &rendering,
+                                          .stageCount = static_cast<uint32_t>(stages.size()),
+                                          .pStages = stages.data(),
+                                          .pVertexInputState = &input,
+                                          .pInputAssemblyState = &assembly,
+                                          .pViewportState = &viewport,
+                                          .pRasterizationState = &raster,
+                                          .pMultisampleState = &samples,
+                                          .pColorBlendState = &blend,
+                                          .pDynamicState = &dynamic,
+                                          .layout = layout};
+  VkPipeline handle = VK_NULL_HANDLE;
+  check(vkCreateGraphicsPipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &handle), "vkCreateGraphicsPipelines");
+  return PipelineHandle(device, handle);
+}
 
 DescriptorSet create_descriptor_set(const Device& device, VkDescriptorSetLayout layout,
                                     const std::vector<Binding>& bindings) {

@@ -1,4 +1,4 @@
-// Compute pipelines and the descriptor sets bound to them.
+// Compute and graphics pipelines and the descriptor sets bound to them.
 #pragma once
 
 #include <cstring>
@@ -32,7 +32,15 @@ ComputePipeline create_compute_pipeline(const Device& device, const std::string&
 SetLayout create_set_layout(const Device& device, const std::vector<Binding>& bindings);
 PipelineLayout create_pipeline_layout(const Device& device, VkDescriptorSetLayout set_layout, VkShaderStageFlags stages,
                                       uint32_t push_constant_bytes);
-ShaderModule create_shader_module(const Device& device, const std::string& shader);
+ShaderModule create_shader_module(const Device& device, const std::vector<uint32_t>& words);
+// The pipeline alone, from a shader's words: create_compute_pipeline and named_pipeline.hpp both make theirs so.
+PipelineHandle create_compute_handle(const Device& device, const std::string& name, const std::vector<uint32_t>& words,
+                                     const VkSpecializationInfo& constants, VkPipelineLayout layout);
+// Triangles without vertex input (the vertex shader makes or fetches its vertex), culling, blending or depth, drawn
+// into one image of `format`; viewport and scissor are set when recording. Both stages get the constants.
+PipelineHandle create_graphics_pipeline(const Device& device, const std::string& vertex_shader,
+                                        const std::string& fragment_shader, VkPipelineLayout layout, VkFormat format,
+                                        const Specialization& specialization = {});
 
 // One descriptor set with a pool of its own: allocated once, written once, never in a frame.
 struct DescriptorSet {
