@@ -211,6 +211,19 @@ void keys(const PanelContext& shown, PanelState& state) {
   ImGui::PopStyleVar(2);
 }
 
+// At the window's foot, as wide as the panel: were it a row of the panel, it would move the others under the mouse.
+void message_box(PixelSize size, const PanelState& state) {
+  if (state.message.empty()) return;
+  ImGui::SetNextWindowPos({kMargin, size.height - kMargin}, ImGuiCond_Always, {0.0f, 1.0f});
+  ImGui::SetNextWindowSize({state.width, 0.0f});
+  if (ImGui::Begin("##message", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs)) {
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::TextColored({1.0f, 0.82f, 0.4f, 1.0f}, "%s", state.message.c_str());
+    ImGui::PopTextWrapPos();
+  }
+  ImGui::End();
+}
+
 }  // namespace
 
 void set_style() {
@@ -236,7 +249,6 @@ void lay_out(const PanelContext& shown, PixelSize size, Settings& settings, Pane
   const std::string title = fmt::format("{:02} {}###panel", shown.chapter.number, shown.chapter.title);
   if (ImGui::Begin(title.c_str())) {
     ImGui::PushTextWrapPos(0.0f);
-    if (!state.message.empty()) ImGui::TextColored({1.0f, 0.82f, 0.4f, 1.0f}, "%s", state.message.c_str());
     ImGui::TextUnformatted(fitted(camera_text(shown), ImGui::GetContentRegionAvail().x).c_str());
     tooltip("the camera: height above the sphere; azimuth, from north over east; elevation");
     keys(shown, state);
@@ -249,6 +261,7 @@ void lay_out(const PanelContext& shown, PixelSize size, Settings& settings, Pane
     state.height = std::min(ImGui::GetCursorPosY() + ImGui::GetStyle().WindowPadding.y, tallest);
   }
   ImGui::End();
+  message_box(size, state);
 }
 
 }  // namespace welkin
