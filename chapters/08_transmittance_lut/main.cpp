@@ -1,5 +1,5 @@
-// Chapter 08, transmittance table: what the air lets through towards the sun is computed once, and then looked up. The
-// frame becomes a graph of passes that run only when what they depend on has changed.
+// Chapter 08, transmittance table: the transmittance towards the sun is computed once and then looked up. The frame
+// becomes a graph of passes that run only when their inputs have changed.
 #include "chapters/02_window/window.hpp"
 #include "chapters/06_display/display.hpp"
 #include "chapters/08_transmittance_lut/table_sky.hpp"

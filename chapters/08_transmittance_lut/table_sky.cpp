@@ -1,4 +1,4 @@
-// The passes of chapter 08's pictures and probes. See table_sky.hpp.
+// The passes that draw chapter 08's pictures and answer its probes. See table_sky.hpp.
 #include "chapters/08_transmittance_lut/table_sky.hpp"
 
 #include "chapters/05_single_scattering/probe.hpp"
@@ -11,8 +11,8 @@ struct StepsPush {
   int32_t view_steps, count, unused[2];
 };
 
-// Constants and bindings of both.
-graph::Step marching(const app::Context& context, app::Board& board, const char* shader) {
+// Shader, constants and bindings that picture and probe share.
+graph::Step march_step(const app::Context& context, app::Board& board, const char* shader) {
   const AirBlock& air = board.get<AirBlock>("the air");
   const TransmittanceTable& table = board.get<TransmittanceTable>("a transmittance table");
   gpu::Constants constants = joined(air.constants, table.constants);
@@ -31,7 +31,7 @@ app::Effect table_march() {
   effect.key = [](const Scene& scene, const Settings&) { return fmt::format("{}", scene.sun.disc); };
   effect.declare = [](app::Builder& builder, app::Board& board) {
     const graph::Resource picture = builder.picture(board, "picture");
-    graph::Step step = marching(builder.context, board, "08_transmittance_lut/image.comp");
+    graph::Step step = march_step(builder.context, board, "08_transmittance_lut/image.comp");
     step.bindings.push_back({"target", picture});
     step.record = [context = builder.context, picture](const graph::Recorder& r) {
       r.push(StepsPush{context.settings.integer("view.steps"), 0, {}}).dispatch_over(r.graph.image(picture).size);
@@ -49,7 +49,7 @@ std::vector<app::ProbeResult> probe_table_march(const app::Context& context, std
   app::Effect march{.name = "probe", .chapter = 8};
   march.declare = [](app::Builder& builder, app::Board& board) {
     const ProbeBuffers& probe = board.get<ProbeBuffers>("the rays of a probe");
-    graph::Step step = marching(builder.context, board, "08_transmittance_lut/probe.comp");
+    graph::Step step = march_step(builder.context, board, "08_transmittance_lut/probe.comp");
     step.bindings.push_back({"Rays", probe.rays});
     step.bindings.push_back({"Results", probe.results});
     step.record = [context = builder.context, range = probe.range](const graph::Recorder& r) {

@@ -11,7 +11,7 @@ struct TablePush {
 }  // namespace
 
 // [knobs]
-// One ladder only: a sweep multiplies them. The page's table of errors has all the others.
+// Only one knob has a ladder, because a sweep runs all combinations. The page's table of errors covers the others.
 std::vector<Knob> transmittance_knobs() {
   return {{.name = "transmittance.width",
            .unit = "texels",

@@ -1,6 +1,6 @@
 // The transmittance table as an effect, for this chapter and those after it.
 //
-// A pass that looks transmittance up binds "transmittance_table" and takes the constants from the board; its shader
+// A pass that looks up transmittance binds "transmittance_table" and takes the constants from the board. Its shader
 // includes 04_air/variant.glsl, defines TRANSMITTANCE_BINDING and includes 08_transmittance_lut/table.glsl.
 #pragma once
 
@@ -10,16 +10,16 @@
 
 namespace welkin {
 
-// transmittance.width, .height, .steps, .mapping, .stored, .format.
+// The knobs transmittance.width, .height, .steps, .mapping, .stored, .format.
 std::vector<Knob> transmittance_knobs();
 
 // On the board: transmittance from every altitude to the top of the air, by the cosine of the zenith angle.
 struct TransmittanceTable {
   graph::Resource image;
-  gpu::Constants constants;  // how it is mapped and what it holds
+  gpu::Constants constants;  // TABLE_MAPPING, TABLE_STORED: how it is mapped and what it holds
 };
 
-// Pass "transmittance": fills the table, when the air has changed.
+// Pass "transmittance": fills the table when the air has changed.
 app::Effect transmittance_table();
 
 }  // namespace welkin

@@ -1,4 +1,4 @@
-// The passes of chapter 09's pictures and probes. See all_orders_sky.hpp.
+// The passes that draw chapter 09's pictures and answer its probes. See all_orders_sky.hpp.
 #include "chapters/09_multiple_scattering_lut/all_orders_sky.hpp"
 
 #include "chapters/05_single_scattering/probe.hpp"
@@ -7,7 +7,7 @@
 namespace welkin {
 
 // [march]
-// Without the table single scattering is all there is, and chapter 05's shaders draw it.
+// Without the table chapter 05's shaders draw single scattering.
 graph::Step all_orders_step(const app::Context& context, app::Board& board, const std::string& shader) {
   const AirBlock& air = board.get<AirBlock>("the air");
   const MultipleScatteringTable* table = board.find<MultipleScatteringTable>();
@@ -62,7 +62,7 @@ std::vector<app::ProbeResult> probe_all_orders(const app::Context& context, std:
     step.bindings.push_back({"Results", probe.results});
     step.record = [context = builder.context, range = probe.range,
                    has_table = board.find<MultipleScatteringTable>() != nullptr](const graph::Recorder& r) {
-      // Chapter 05's shader has the count second, this chapter's third.
+      // Chapter 05's shader reads the count from the second component, this chapter's from the third.
       const int table_steps = has_table ? context.settings.integer("multiple_scattering.view_steps") : range->count;
       r.push(MarchSteps{context.settings.integer("view.steps"), table_steps, range->count, 0});
       r.dispatch(static_cast<uint32_t>(range->count + 63) / 64);

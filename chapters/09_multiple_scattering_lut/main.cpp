@@ -1,5 +1,5 @@
-// Chapter 09, multiple scattering: light that was scattered twice and more, from a table that is computed when the air
-// changes, and gathered along every ray.
+// Chapter 09, multiple scattering: light scattered twice and more comes from a table, which is computed when the air
+// changes and integrated along every ray.
 #include "chapters/02_window/window.hpp"
 #include "chapters/06_display/display.hpp"
 #include "chapters/07_ground_truth/ground_truth.hpp"

@@ -7,15 +7,15 @@
 namespace welkin {
 namespace {
 
-constexpr uint32_t kLayers = 7;    // of shaders/09_multiple_scattering_lut/table.glsl
+constexpr uint32_t kLayers = 7;    // as in shaders/09_multiple_scattering_lut/table.glsl
 constexpr size_t kNodeBytes = 48;  // RayNode of shaders/09_multiple_scattering_lut/ray_nodes.glsl
 
-// What the knobs ask for, rounded to what the shaders do.
+// The table's size and cost by the knobs, rounded to the multiples that the shaders need.
 struct Plan {
   bool published, half;
   uint32_t side;
   int directions, steps, orders;
-  uint32_t rays;  // that differ, for a sun anywhere: altitudes times zenith angles
+  uint32_t rays;  // whose nodes are stored: altitudes times zenith angles, for all suns
 };
 
 Plan plan_of(const Scene& scene, const Settings& settings) {
@@ -24,9 +24,9 @@ Plan plan_of(const Scene& scene, const Settings& settings) {
             .side = static_cast<uint32_t>(settings.integer("multiple_scattering.size")),
             .directions = (settings.integer("multiple_scattering.directions") + 15) / 16 * 16,
             .steps = (settings.integer("multiple_scattering.steps") + 3) / 4 * 4};
-  const int wanted = settings.integer("multiple_scattering.iterations");
-  plan.orders = plan.published ? 1 : wanted == 0 ? orders_of(make_atmosphere(scene)) : std::max(wanted, 3);
-  // Fibonacci's directions all have zenith angles of their own; the horizon's set stands in 8 rings, or 16.
+  const int iterations = settings.integer("multiple_scattering.iterations");
+  plan.orders = plan.published ? 1 : iterations == 0 ? orders_needed(make_atmosphere(scene)) : std::max(iterations, 3);
+  // Every direction of the Fibonacci set has its own zenith angle; those of the horizon set share 8 or 16.
   const int rings = plan.directions >= 128 ? 16 : 8;
   plan.rays = plan.side * static_cast<uint32_t>(
                               settings.choice("multiple_scattering.set") == "fibonacci" ? plan.directions : rings);
@@ -126,32 +126,31 @@ static std::vector<Knob> texel_knobs() {
 std::vector<Knob> multiple_scattering_knobs() { return joined(order_knobs(), texel_knobs()); }
 // [/knobs]
 
-// [orders_of]
-// The ratio of two orders is the one the series ends with only after light has crossed the air, however it gets there:
-// straight on in about tau scatterings, or by diffusion in some tau^2 / 3, after which slab eigenmodes have died out.
-int orders_of(const interop::Atmosphere& air) {
+// [orders_needed]
+// The ratio of two successive orders becomes constant only after light has crossed the air: going straight on in about
+// tau scatterings, or by diffusion in about tau^2 / 3, after which the higher eigenmodes of a slab have decayed.
+int orders_needed(const interop::Atmosphere& air) {
   const double top_km = air.top_km;
-  double deepest = 0.0;
+  double max_tau = 0.0;
   for (int c = 0; c < 3; ++c) {
     double tau = 0.0;
     for (const auto& [scattering, scale_height_km] : {std::pair(air.rayleigh_scattering, air.rayleigh_scale_height_km),
                                                       std::pair(air.mie_scattering, air.mie_scale_height_km)})
       if (scale_height_km > 0.0f) tau += scattering[c] * scale_height_km * (1.0 - std::exp(-top_km / scale_height_km));
-    deepest = std::max(deepest, tau);
+    max_tau = std::max(max_tau, tau);
   }
-  return static_cast<int>(std::min(3.0 + std::ceil(deepest * (2.0 + 0.3 * deepest)), 64.0));
+  return static_cast<int>(std::min(3.0 + std::ceil(max_tau * (2.0 + 0.3 * max_tau)), 64.0));
 }
-// [/orders_of]
+// [/orders_needed]
 
 // [resources]
-// The table, and what it is gathered from: the first order, three images of later orders that take turns, and the nodes
-// of the rays light is gathered along.
+// The table and its intermediate results: the first order, three images that higher orders use in turn, and the nodes
+// of the rays that light is gathered along.
 struct TableResources {
   graph::Resource table, nodes;
   std::vector<graph::Resource> orders;
-  graph::Resource after(int gathered) const {
-    return gathered == 1 ? orders[0] : orders[1 + static_cast<size_t>(gathered - 2) % 3];
-  }
+  // The image that holds the sum of the first n orders.
+  graph::Resource sum_of_orders(int n) const { return n == 1 ? orders[0] : orders[1 + static_cast<size_t>(n - 2) % 3]; }
 };
 
 static TableResources add_resources(graph::Graph& graph, const Plan& plan) {
@@ -168,9 +167,9 @@ static TableResources add_resources(graph::Graph& graph, const Plan& plan) {
 // [/resources]
 
 // [steps]
-// One pass: the nodes, the first order, one order after another, and the end of the series.
-static graph::Pass gathering(const AirBlock& air, const Plan& plan, const TableResources& to,
-                             const gpu::Constants& table, const gpu::Constants& gather) {
+// One pass: the nodes, the first order, the higher orders one by one, and the rest of the series.
+static graph::Pass gather_pass(const AirBlock& air, const Plan& plan, const TableResources& resources,
+                               const gpu::Constants& table, const gpu::Constants& gather) {
   graph::Pass pass{.name = "multiple scattering"};
   const auto add = [&](const std::string& name, const gpu::Constants& constants, std::vector<graph::Binding> bindings,
                        auto record) {
@@ -182,16 +181,25 @@ static graph::Pass gathering(const AirBlock& air, const Plan& plan, const TableR
   };
   const auto texels = [side = plan.side](const graph::Recorder& r) { r.dispatch(side, side); };
   const uint32_t panels = plan.rays * static_cast<uint32_t>(plan.steps / 4);
-  add("nodes", gather, {{"Nodes", to.nodes}}, [panels](const graph::Recorder& r) { r.dispatch((panels + 31) / 32); });
-  add(plan.published ? "published" : "first", gather, {{"Nodes", to.nodes}, {"orders", to.orders[0]}}, texels);
+  add("nodes", gather, {{"Nodes", resources.nodes}},
+      [panels](const graph::Recorder& r) { r.dispatch((panels + 31) / 32); });
+  add(plan.published ? "published" : "first", gather, {{"Nodes", resources.nodes}, {"orders", resources.orders[0]}},
+      texels);
   for (int n = 2; n <= plan.orders; ++n)
     add("next", gather,
-        {{"Nodes", to.nodes}, {"before", to.after(n - 1)}, {"first", to.orders[0]}, {"orders", to.after(n)}}, texels);
+        {{"Nodes", resources.nodes},
+         {"before", resources.sum_of_orders(n - 1)},
+         {"first", resources.orders[0]},
+         {"orders", resources.sum_of_orders(n)}},
+        texels);
   gpu::Constants close = table;
   close.push_back({"EXTRAPOLATE", !plan.published});
-  const auto less = [&](int orders) { return to.after(std::max(plan.orders - orders, 1)); };
+  const auto without_last = [&](int count) { return resources.sum_of_orders(std::max(plan.orders - count, 1)); };
   add(plan.half ? "close_half" : "close_float", close,
-      {{"orders", less(0)}, {"one_less", less(1)}, {"two_less", less(2)}, {"kept", to.table}},
+      {{"orders", without_last(0)},
+       {"orders_minus_1", without_last(1)},
+       {"orders_minus_2", without_last(2)},
+       {"final_table", resources.table}},
       [side = plan.side](const graph::Recorder& r) {
         r.dispatch_over({side, side});
       });
@@ -225,7 +233,7 @@ app::Effect multiple_scattering_table() {
                                                  {"DIRECTION_SET", settings.integer("multiple_scattering.set")},
                                                  {"STEPS", plan.steps}});
     const TableResources resources = add_resources(builder.graph, plan);
-    builder.graph.add(gathering(air, plan, resources, table, gather));
+    builder.graph.add(gather_pass(air, plan, resources, table, gather));
     board.offer(MultipleScatteringTable{resources.table, table});
   };
   return effect;

@@ -1,5 +1,5 @@
-// Chapter 10, sky view table: the sky seen from where the camera is, computed at some twenty thousand directions and
-// looked up for every pixel; and the direct march where a table of one altitude cannot show the planet.
+// Chapter 10, sky view table: the sky seen by the camera is computed for about twenty thousand directions and looked up
+// for every pixel. From altitudes where the table cannot resolve the planet, the direct march replaces it.
 #include "chapters/02_window/window.hpp"
 #include "chapters/06_display/display.hpp"
 #include "chapters/07_ground_truth/ground_truth.hpp"

@@ -19,8 +19,8 @@ struct ProbePush {
   int32_t first, count, unused[2];
 };
 
-// One look-up a pixel; with the sun's disc, through the air that chapter 08's table knows.
-graph::Step look_up(app::Board& board, bool with_disc) {
+// One look-up per pixel. The sun's disc is drawn attenuated by chapter 08's transmittance table.
+graph::Step look_up_step(app::Board& board, bool with_disc) {
   const AirBlock& air = board.get<AirBlock>("the air");
   const SkyViewTable& table = board.get<SkyViewTable>("a sky view table");
   graph::Step step{.shader = "10_sky_view_lut/sky.comp",
@@ -34,7 +34,8 @@ graph::Step look_up(app::Board& board, bool with_disc) {
   return step;
 }
 
-// Whether the sun's disc may be in the picture: within the cone around the look direction that holds its corners.
+// Whether the sun's disc may be in the picture: within the cone around the view direction that contains the picture's
+// corners.
 bool sun_in_picture(const Scene& scene, const CameraRays& camera) {
   const double corner = std::atan(std::hypot(glm::length(camera.right), glm::length(camera.up)));
   const double margin = 1e-3 + glm::radians(scene.sun.angular_radius_deg);
@@ -44,23 +45,23 @@ bool sun_in_picture(const Scene& scene, const CameraRays& camera) {
 }  // namespace
 
 // [sky]
-// Three steps write the picture, and in each frame one of them does: the look-up with the sun's disc, the look-up where
-// the disc is out of the picture, and the march.
+// The pass has three steps, and one of them draws each frame: the look-up with the sun's disc, the look-up where the
+// disc is out of the picture, and the march.
 app::Effect sky() {
   app::Effect effect{.name = "sky", .chapter = 10, .knobs = {march_knob("view.steps")}};
-  effect.knobs.front().ladder.clear();  // climbed in chapter 05
+  effect.knobs.front().ladder.clear();  // swept in chapter 05
   effect.key = [](const Scene& scene, const Settings&) { return fmt::format("{}", scene.sun.disc); };
   effect.declare = [](app::Builder& builder, app::Board& board) {
     const app::Context& context = builder.context;
     const graph::Resource picture = builder.picture(board, "sky");
     const bool has_orders = board.find<MultipleScatteringTable>() != nullptr;
-    const auto cover = [picture](const graph::Recorder& r) { r.dispatch_over(r.graph.image(picture).size); };
+    const auto dispatch = [picture](const graph::Recorder& r) { r.dispatch_over(r.graph.image(picture).size); };
     graph::Pass pass{.name = "sky", .changed = [](const app::Frame&) { return true; }};
     const auto add = [&](graph::Step step, auto when, auto record) {
       step.bindings.push_back({"target", picture});
       step.when = [context, when](const graph::Recorder& r) {
         const CameraRays& camera = r.frame.camera;
-        return when(sky_view_serves(context.settings, camera.altitude_km),
+        return when(uses_sky_view_table(context.settings, camera.altitude_km),
                     context.scene.sun.disc && sun_in_picture(context.scene, camera));
       };
       step.record = record;
@@ -68,11 +69,11 @@ app::Effect sky() {
     };
     if (context.scene.sun.disc)
       add(
-          look_up(board, true), [](bool serves, bool sun) { return serves && sun; }, cover);
+          look_up_step(board, true), [](bool use_table, bool sun) { return use_table && sun; }, dispatch);
     add(
-        look_up(board, false), [](bool serves, bool sun) { return serves && !sun; }, cover);
+        look_up_step(board, false), [](bool use_table, bool sun) { return use_table && !sun; }, dispatch);
     add(
-        all_orders_step(context, board, "image"), [](bool serves, bool) { return !serves; },
+        all_orders_step(context, board, "image"), [](bool use_table, bool) { return !use_table; },
         [context, picture, has_orders](const graph::Recorder& r) {
           record_all_orders(context, r, has_orders, r.graph.image(picture).size);
         });
@@ -83,7 +84,7 @@ app::Effect sky() {
 // [/sky]
 
 // [probe]
-static app::Effect look_up_rays() {
+static app::Effect probe_look_up() {
   app::Effect effect{.name = "probe", .chapter = 10};
   effect.declare = [](app::Builder& builder, app::Board& board) {
     const AirBlock& air = board.get<AirBlock>("the air");
@@ -108,24 +109,25 @@ std::vector<app::ProbeResult> probe_sky(const app::Context& context, std::span<c
   std::map<std::pair<double, double>, std::vector<size_t>> groups;
   std::vector<size_t> marched;
   for (size_t i = 0; i < rays.size(); ++i) {
-    if (sky_view_serves(context.settings, rays[i].altitude_km))
+    if (uses_sky_view_table(context.settings, rays[i].altitude_km))
       groups[{rays[i].altitude_km, rays[i].sun_zenith_deg}].push_back(i);
     else
       marched.push_back(i);
   }
   std::vector<app::ProbeResult> results(rays.size());
-  const auto answer = [&](const std::vector<size_t>& members, const auto& ask) {
-    std::vector<app::ProbeRay> some;
-    for (const size_t i : members) some.push_back(rays[i]);
-    const std::vector<app::ProbeResult> light = ask(some);
+  const auto fill_results = [&](const std::vector<size_t>& members, const auto& probe) {
+    std::vector<app::ProbeRay> subset;
+    for (const size_t i : members) subset.push_back(rays[i]);
+    const std::vector<app::ProbeResult> light = probe(subset);
     for (size_t k = 0; k < members.size(); ++k) results[members[k]] = light[k];
   };
-  if (!marched.empty()) answer(marched, [&](const auto& some) { return probe_all_orders(context, some); });
+  if (!marched.empty()) fill_results(marched, [&](const auto& subset) { return probe_all_orders(context, subset); });
   if (groups.empty()) return results;
-  size_t most = 0;
-  for (const auto& [key, members] : groups) most = std::max(most, members.size());
-  ProbeRun run(context, {air(), multiple_scattering_table(), sky_view(), look_up_rays()}, most);
-  for (const auto& [key, members] : groups) answer(members, [&](const auto& some) { return run.run(some, true); });
+  size_t largest_group = 0;
+  for (const auto& [key, members] : groups) largest_group = std::max(largest_group, members.size());
+  ProbeRun run(context, {air(), multiple_scattering_table(), sky_view(), probe_look_up()}, largest_group);
+  for (const auto& [key, members] : groups)
+    fill_results(members, [&](const auto& subset) { return run.run(subset, true); });
   return results;
 }
 // [/probe]

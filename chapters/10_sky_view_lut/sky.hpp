@@ -1,4 +1,4 @@
-// Chapter 10's effect: the sky looked up in the sky view table, or marched where the table is not good enough.
+// Chapter 10's effect: the sky is looked up in the sky view table, or marched where the table is not accurate enough.
 #pragma once
 
 #include <vector>
@@ -7,10 +7,11 @@
 
 namespace welkin {
 
-// Pass "sky": a picture of the sky, from the table or by the direct march; the sun's disc behind the air.
+// Pass "sky": draws the sky from the table or by the direct march, and the sun's disc seen through the air.
 app::Effect sky();
 
-// Rays that share an altitude and a height of the sun are looked up together, the rest are marched.
+// Rays that share an altitude and a sun zenith angle are looked up together in one table; rays from altitudes where the
+// table is not used are marched.
 std::vector<app::ProbeResult> probe_sky(const app::Context& context, std::span<const app::ProbeRay> rays);
 
 }  // namespace welkin

@@ -10,7 +10,7 @@ namespace {
 constexpr float kHalfUnit = 1.0f / 4096.0f;  // as in sky_view_half.comp
 
 struct FillPush {
-  glm::vec4 place;
+  glm::vec4 viewpoint;
   int32_t view_steps, table_steps, unused[2];
 };
 
@@ -58,21 +58,21 @@ std::vector<Knob> sky_view_knobs() {
 }
 // [/knobs]
 
-bool sky_view_serves(const Settings& settings, double altitude_km) {
+bool uses_sky_view_table(const Settings& settings, double altitude_km) {
   const std::string& method = settings.choice("sky_view.method");
   return method == "table" || (method == "auto" && altitude_km <= settings.number("sky_view.highest"));
 }
 
 // [pass]
-// What the table depends on beside the air. The sun's azimuth is no part of it: the table is turned towards the sun
-// when it is read.
-struct SeenFrom {
+// The inputs of the table besides the air. The sun's azimuth is none of them: azimuths in the table are relative to the
+// sun's.
+struct SkyViewInputs {
   float altitude_km, mu_sun;
   int view_steps, table_steps;
-  bool operator==(const SeenFrom&) const = default;
+  bool operator==(const SkyViewInputs&) const = default;
 };
 
-static SeenFrom seen_from(const Settings& settings, bool has_orders, const CameraRays& camera) {
+static SkyViewInputs sky_view_inputs(const Settings& settings, bool has_orders, const CameraRays& camera) {
   return {camera.altitude_km, camera.sun.z, settings.integer("sky_view.steps"),
           has_orders ? settings.integer("multiple_scattering.view_steps") : 0};
 }
@@ -97,21 +97,23 @@ app::Effect sky_view() {
       step.constants = joined(step.constants, orders->constants);
       step.bindings.push_back({"scattering_table", orders->image});
     }
-    const auto filled = std::make_shared<std::optional<SeenFrom>>();
-    step.record = [context, filled, has_orders, size](const graph::Recorder& r) {
+    const auto filled_for = std::make_shared<std::optional<SkyViewInputs>>();
+    step.record = [context, filled_for, has_orders, size](const graph::Recorder& r) {
       const CameraRays& camera = r.frame.camera;
-      *filled = seen_from(context.settings, has_orders, camera);
+      *filled_for = sky_view_inputs(context.settings, has_orders, camera);
       const float sun_sine = std::hypot(camera.sun.x, camera.sun.y);
-      r.push(FillPush{
-          {camera.altitude_km, camera.sun.z, sun_sine, 0.0f}, (*filled)->view_steps, (*filled)->table_steps, {}});
+      r.push(FillPush{{camera.altitude_km, camera.sun.z, sun_sine, 0.0f},
+                      (*filled_for)->view_steps,
+                      (*filled_for)->table_steps,
+                      {}});
       r.dispatch((size.width + 31) / 32, size.height);
     };
     graph::Pass pass{.name = "sky view"};
-    pass.changed = [context, filled, has_orders](const app::Frame& frame) {
-      return *filled != seen_from(context.settings, has_orders, frame.camera);
+    pass.changed = [context, filled_for, has_orders](const app::Frame& frame) {
+      return *filled_for != sky_view_inputs(context.settings, has_orders, frame.camera);
     };
     pass.needed = [context](const app::Frame& frame) {
-      return sky_view_serves(context.settings, frame.camera.altitude_km);
+      return uses_sky_view_table(context.settings, frame.camera.altitude_km);
     };
     pass.steps.push_back(std::move(step));
     builder.graph.add(std::move(pass));

@@ -1,9 +1,10 @@
-// The pass that fills the transmittance table, a texel an invocation. The including entry point says TABLE_FORMAT.
+// Fills the transmittance table, one texel per invocation. The including entry point defines TABLE_FORMAT, the image's
+// format.
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "04_air/variant.glsl"
 layout(constant_id = 4) const int TABLE_MAPPING = 1;
 layout(constant_id = 5) const int TABLE_STORED = 1;
-layout(constant_id = 6) const int STEPS = 0;  // its length known, a compiler unrolls the loop
+layout(constant_id = 6) const int STEPS = 0;  // a constant, so that the compiler can unroll the loop
 #include "08_transmittance_lut/table_texel.glsl"
 
 layout(binding = 0, std140) uniform Air {

@@ -1,4 +1,4 @@
-// The rays of --probe through the same march; never with the sun's disc.
+// Traces the rays of --probe with the same march, without the sun's disc.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -12,7 +12,7 @@ layout(binding = 2, std430) readonly buffer Rays {
   Ray rays[];
 };
 layout(binding = 3, std430) writeonly buffer Results {
-  vec4 results[];  // two a ray: radiance, transmittance
+  vec4 results[];  // two per ray: radiance, transmittance
 };
 layout(push_constant) uniform Push {
   ivec4 steps;  // x: view, y: number of rays
@@ -21,7 +21,8 @@ layout(push_constant) uniform Push {
 void main() {
   const uint i = gl_GlobalInvocationID.x;
   if (i >= uint(steps.y)) return;
-  const RayLight light = single_scattering(atmosphere, rays[i].view.w, rays[i].view.xyz, rays[i].sun.xyz, steps.x, NO_LIGHT_STEPS, RULE);
+  const RayLight light = single_scattering(atmosphere, rays[i].view.w, rays[i].view.xyz, rays[i].sun.xyz, steps.x,
+                                           UNUSED_LIGHT_STEPS, RULE);
   results[2 * i] = vec4(light.radiance, 0.0);
   results[2 * i + 1] = vec4(light.transmittance, 0.0);
 }

@@ -1,5 +1,5 @@
-// What every entry point that reads the transmittance table includes, after 04_air/variant.glsl and after saying where the
-// table is bound: #define TRANSMITTANCE_BINDING n. Takes specialization constants 4 and 5.
+// Included by every entry point that reads the transmittance table. The entry point includes 04_air/variant.glsl first
+// and defines where the table is bound: #define TRANSMITTANCE_BINDING n. Takes specialization constants 4 and 5.
 #ifndef WELKIN_TRANSMITTANCE_TABLE_GLSL
 #define WELKIN_TRANSMITTANCE_TABLE_GLSL
 

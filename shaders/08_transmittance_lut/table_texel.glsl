@@ -1,4 +1,4 @@
-// What one texel of the transmittance table holds. Pure functions; km.
+// Computes the content of one texel of the transmittance table. Pure functions; km.
 #ifndef WELKIN_TABLE_TEXEL_GLSL
 #define WELKIN_TABLE_TEXEL_GLSL
 
@@ -6,8 +6,8 @@
 #include "08_transmittance_lut/table_map.glsl"
 
 // [table_columns]
-// Columns (rayleigh, mie, ozone) from altitude h to the top. steps > 0: panels of four Gauss-Legendre points, which ask
-// nothing of the profiles but their densities; steps = 0: the closed form of chapter 05, for exponentials and a tent.
+// Columns (rayleigh, mie, ozone) from altitude h to the top. steps > 0: panels of four Gauss-Legendre points, for any
+// density profile. steps = 0: the closed form of chapter 05, for exponential and tent profiles.
 vec3 table_columns(Atmosphere atmosphere, float altitude_km, float mu, int steps) {
   if (steps == 0) return sun_columns(atmosphere, altitude_km, mu);
   float radius_km = atmosphere.ground_radius_km;
@@ -23,12 +23,12 @@ vec3 table_columns(Atmosphere atmosphere, float altitude_km, float mu, int steps
 // [/table_columns]
 
 // [table_texel]
-// The texel at `uv` of a table of that size.
+// The texel at `uv` of a table of `size` texels.
 vec3 table_texel(Atmosphere atmosphere, vec2 uv, ivec2 size, int steps) {
   TablePath path = transmittance_path(atmosphere, uv, size);
   vec3 tau = extinction(atmosphere, table_columns(atmosphere, path.altitude_km, path.mu, steps));
   if (TABLE_STORED == kStoredMeanExtinction) {
-    // On the top itself the path has no length: the mean over a path shorter than 1 km is the extinction in its middle.
+    // At the top the path has no length. For a path shorter than 1 km the mean is the extinction at its midpoint.
     float d = distance_to_shell_from_inside(atmosphere.ground_radius_km, path.altitude_km, path.mu, atmosphere.top_km);
     if (d < 1.0) return extinction(atmosphere, densities(atmosphere, 0.5 * (path.altitude_km + atmosphere.top_km)));
     return tau / d;

@@ -1,15 +1,15 @@
-// Sets of directions over which light arriving at a point is averaged. Pure functions, also valid C++.
-// Directions are unit vectors one looks along: z up, x the horizontal direction towards the sun. Weights sum to 1.
+// Sets of directions over which the radiance arriving at a point is averaged. Pure functions, also valid C++.
+// A direction is a view direction, a unit vector from the point: z up, x horizontal towards the sun. Weights sum to 1.
 #ifndef WELKIN_DIRECTIONS_GLSL
 #define WELKIN_DIRECTIONS_GLSL
 
 #include "05_single_scattering/light_path.glsl"
 
 const int kSetFibonacci = 0;  // equal weights, nearly equal distances
-const int kSetHorizon = 1;    // Gauss nodes above and below the horizon, gathering at it
+const int kSetHorizon = 1;    // Gauss nodes above and below the horizon, densest next to it
 
 struct WeightedDirection {
-  vec3 look;
+  vec3 view;
   float weight;
 };
 
@@ -21,7 +21,7 @@ WeightedDirection fibonacci_direction(int n, int count) {
   float z = 1.0 - float(2 * n + 1) / float(count);
   float s = sqrt(max((1.0 - z) * (1.0 + z), 0.0));
   WeightedDirection direction;
-  direction.look = vec3(s * cos(phi), s * sin(phi), z);
+  direction.view = vec3(s * cos(phi), s * sin(phi), z);
   direction.weight = 1.0 / float(count);
   return direction;
 }
@@ -33,9 +33,10 @@ float horizon_cosine(float ground_radius_km, float altitude_km) {
 }
 
 // [horizon_set]
-// Light changes fastest across the horizon. On either side of it mu = mu_h + (1 - mu_h) x^2, or mu_h - (1 + mu_h) x^2, with
-// x on Gauss nodes; in azimuth midpoints, and only of the half circle: left of the sun is as right of it. So 64 directions
-// do the work of 128. `count` is a multiple of 16; from 128 on there are two panels of four nodes on either side.
+// Light changes fastest across the horizon. Above it mu = mu_h + (1 - mu_h) x^2, below it mu = mu_h - (1 + mu_h) x^2,
+// with x at Gauss nodes. Azimuths are midpoints of the half circle only, because the sky is symmetric about the sun's
+// azimuth: 64 directions do the work of 128. `count` is a multiple of 16; from 128 on there are two panels of four
+// nodes per side.
 int horizon_rings(int count) { return count >= 128 ? 16 : 8; }
 
 WeightedDirection horizon_direction(int n, int count, float mu_horizon) {
@@ -46,13 +47,13 @@ WeightedDirection horizon_direction(int n, int count, float mu_horizon) {
   bool up = ring < rings / 2;
   int node = up ? ring : ring - rings / 2;
   float x = (float(node / 4) + kGauss4Node[node % 4]) / float(panels);
-  float reach = up ? 1.0 - mu_horizon : 1.0 + mu_horizon;
-  float z = clamp(up ? mu_horizon + reach * x * x : mu_horizon - reach * x * x, -1.0, 1.0);
+  float range = up ? 1.0 - mu_horizon : 1.0 + mu_horizon;
+  float z = clamp(up ? mu_horizon + range * x * x : mu_horizon - range * x * x, -1.0, 1.0);
   float s = sqrt((1.0 - z) * (1.0 + z));
   float phi = 3.14159265358979324 * (float(n / rings) + 0.5) / float(azimuths);
   WeightedDirection direction;
-  direction.look = vec3(s * cos(phi), s * sin(phi), z);
-  direction.weight = kGauss4Weight[node % 4] * x * reach / float(panels * azimuths);
+  direction.view = vec3(s * cos(phi), s * sin(phi), z);
+  direction.weight = kGauss4Weight[node % 4] * x * range / float(panels * azimuths);
   return direction;
 }
 // [/horizon_set]
@@ -62,8 +63,8 @@ WeightedDirection direction_of_set(int set, int n, int count, float mu_horizon) 
   return horizon_direction(n, count, mu_horizon);
 }
 
-// Different zenith angles in a set, and which of them direction n has.
-int elevations_of_set(int set, int count) { return set == kSetFibonacci ? count : horizon_rings(count); }
-int elevation_of(int set, int n, int count) { return n % elevations_of_set(set, count); }
+// Number of different zenith angles in a set, and the index of direction n's.
+int zenith_angles_of_set(int set, int count) { return set == kSetFibonacci ? count : horizon_rings(count); }
+int zenith_angle_index(int set, int n, int count) { return n % zenith_angles_of_set(set, count); }
 
 #endif

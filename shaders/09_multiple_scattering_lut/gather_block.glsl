@@ -1,5 +1,5 @@
-// What the entry points that gather light share: how many directions and nodes, the nodes themselves, and the point a texel
-// stands for.
+// Shared by the entry points that gather light: the numbers of directions and nodes, the buffer of nodes, and the point
+// of a texel.
 #ifndef WELKIN_GATHER_BLOCK_GLSL
 #define WELKIN_GATHER_BLOCK_GLSL
 
@@ -12,14 +12,17 @@ layout(binding = 4, std430) writeonly buffer Nodes {
 #else
 layout(binding = 4, std430) readonly buffer Nodes {
 #endif
-  RayNode nodes[];  // altitude by altitude, zenith angle by zenith angle: a ray's STEPS nodes, then its end
+  RayNode nodes[];  // [altitude][zenith angle][STEPS + 1]: a ray's STEPS nodes, then its end
 };
 
 int first_node_of(int row, int direction) {
-  return (row * elevations_of_set(DIRECTION_SET, DIRECTIONS) + elevation_of(DIRECTION_SET, direction, DIRECTIONS)) * (STEPS + 1);
+  return (row * zenith_angles_of_set(DIRECTION_SET, DIRECTIONS) +
+          zenith_angle_index(DIRECTION_SET, direction, DIRECTIONS)) * (STEPS + 1);
 }
 
-// x: sun's zenith cosine, y: altitude.
-vec2 texel_point(ivec2 texel) { return table_point(MS_MAP, atmosphere.top_km, table_unit_of_texel(vec2(texel), float(MS_SIZE))); }
+// The point of a texel: x: mu_sun, y: altitude.
+vec2 texel_point(ivec2 texel) {
+  return table_point(MS_MAP, atmosphere.top_km, table_unit_of_texel(vec2(texel), float(MS_SIZE)));
+}
 
 #endif

@@ -1,4 +1,4 @@
-// One camera ray per pixel through all_orders_light(), and the sun's disc behind the air.
+// Traces one camera ray per pixel through all_orders_light() and adds the sun's disc seen through the air.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -21,7 +21,8 @@ void main() {
   if (any(greaterThanEqual(pixel, frame.camera.size))) return;
   const Atmosphere air = atmosphere;
   const vec3 view = camera_direction(frame.camera, pixel);
-  vec3 radiance = all_orders_light(air, frame.camera.altitude_km, view, frame.camera.sun, steps.x, steps.y, false).radiance;
+  vec3 radiance =
+      all_orders_light(air, frame.camera.altitude_km, view, frame.camera.sun, steps.x, steps.y, false).radiance;
   if (SUN_DISC) radiance += sun_disc_light(air, frame.camera, pixel, view);
   imageStore(target, pixel, vec4(radiance, 1.0));
 }

@@ -1,4 +1,4 @@
-// The rays of --probe through the same all_orders_light() that draws the picture; never with the sun's disc.
+// Traces the rays of --probe with all_orders_light(), which also draws the picture, without the sun's disc.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -14,7 +14,7 @@ layout(binding = 2, std430) readonly buffer Rays {
   Ray rays[];
 };
 layout(binding = 3, std430) writeonly buffer Results {
-  vec4 results[];  // two a ray: radiance, transmittance
+  vec4 results[];  // two per ray: radiance, transmittance
 };
 layout(push_constant) uniform Push {
   ivec4 steps;  // x: first order, y: table, z: number of rays
@@ -23,7 +23,8 @@ layout(push_constant) uniform Push {
 void main() {
   const uint i = gl_GlobalInvocationID.x;
   if (i >= uint(steps.z)) return;
-  const RayLight light = all_orders_light(atmosphere, rays[i].view.w, rays[i].view.xyz, rays[i].sun.xyz, steps.x, steps.y, true);
+  const RayLight light =
+      all_orders_light(atmosphere, rays[i].view.w, rays[i].view.xyz, rays[i].sun.xyz, steps.x, steps.y, true);
   results[2 * i] = vec4(light.radiance, 0.0);
   results[2 * i + 1] = vec4(light.transmittance, 0.0);
 }

@@ -1,7 +1,8 @@
-// The part of a gathering that neither the sun nor the order changes. Where a ray's nodes lie, and how much of the light that
-// the air scatters there reaches the ray's first point, depends on that point's altitude and the ray's zenith angle alone. It
-// is computed once, and used for all sun heights, azimuths and orders. Pure functions; km.
-//   light gathered = sum over nodes of [ molecules P_R + aerosol P_M ] * light there,     weights = T beta rho dt
+// Quadrature nodes of the rays that light is gathered along. The nodes' places, and the fraction of the light scattered
+// there that reaches the ray's first point, depend only on that point's altitude and the ray's zenith angle. They are
+// computed once and used for all sun zenith angles, azimuths and orders. Pure functions; km.
+//   gathered radiance = sum over nodes of (w_R P_R + w_M P_M) * incident light,     weights w = T beta rho dt
+// T: transmittance to the first point; beta rho: scattering coefficient; P: phase function; R: Rayleigh, M: Mie.
 #ifndef WELKIN_RAY_NODES_GLSL
 #define WELKIN_RAY_NODES_GLSL
 
@@ -9,33 +10,37 @@
 
 // [ray_node]
 struct RayNode {
-  vec4 place;      // x: altitude; y: r / r', z: t / r', with r and r' the radii of the ray's first point and of the node
-  vec4 molecules;  // weights per channel
-  vec4 aerosol;
+  vec4 geometry;  // x: altitude; y: r / r', z: t / r'; r, r': radii of the ray's first point and of the node
+  vec4 rayleigh;  // weights w_R per channel
+  vec4 mie;       // weights w_M
 };
 
-// A cosine to the vertical of the ray's first point, carried to the node: mu' = (r mu + t nu) / r'. nu: to the ray.
-float turned_cosine(RayNode node, float mu, float nu) { return clamp(node.place.y * mu + node.place.z * nu, -1.0, 1.0); }
+// The zenith cosine mu of a direction at the ray's first point, at the node: mu' = (r mu + t nu) / r'. nu: cosine
+// between direction and ray.
+float cosine_at_node(RayNode node, float mu, float nu) {
+  return clamp(node.geometry.y * mu + node.geometry.z * nu, -1.0, 1.0);
+}
 
 RayNode node_at(Atmosphere atmosphere, AirRay ray, float altitude_km, float t_km) {
   float r = atmosphere.ground_radius_km + altitude_km;
   RayNode node;
-  node.place = vec4(altitude_km, (atmosphere.ground_radius_km + ray.altitude_km) / r, t_km / r, 0.0);
-  node.molecules = vec4(0.0, 0.0, 0.0, 0.0);
-  node.aerosol = vec4(0.0, 0.0, 0.0, 0.0);
+  node.geometry = vec4(altitude_km, (atmosphere.ground_radius_km + ray.altitude_km) / r, t_km / r, 0.0);
+  node.rayleigh = vec4(0.0, 0.0, 0.0, 0.0);
+  node.mie = vec4(0.0, 0.0, 0.0, 0.0);
   return node;
 }
 
-// Where the ray ends. What the ground there returns of light that falls on it, T albedo, stands in `molecules`: nothing if
-// the ray leaves the air.
+// The end of the ray. `rayleigh` holds the weight of light reflected by the ground there, T albedo; 0 if the ray leaves
+// the air.
 RayNode ray_end(Atmosphere atmosphere, SourceRay along) {
   RayNode node = node_at(atmosphere, along.ray, 0.0, along.ray.length_km);
-  if (along.ray.hits_air && along.ray.hits_ground) node.molecules = vec4(ray_transmittance(atmosphere, along) * atmosphere.ground_albedo, 0.0);
+  if (along.ray.hits_air && along.ray.hits_ground)
+    node.rayleigh = vec4(ray_transmittance(atmosphere, along) * atmosphere.ground_albedo, 0.0);
   return node;
 }
 // [/ray_node]
 
-// Cells of equal count, and how many nodes each deserves.
+// Cells of equal count (see ScaleCount of chapter 05), and the weight by which nodes are distributed over them.
 struct NodeCells {
   float width;
   float total;
@@ -43,42 +48,43 @@ struct NodeCells {
 };
 
 // [node_cells]
-// As many as the cell scatters light to the ray's first point, T sigma_s per count, and a few wherever there is air: at dusk
-// that may be where the light is.
+// A cell's weight follows the light it scatters to the ray's first point, T sigma_s per count, with a minimum wherever
+// there is air: at dusk only a dim cell may be lit.
 NodeCells node_cells(Atmosphere atmosphere, SourceRay along) {
   NodeCells cells;
   cells.width = (along.x_end - along.x_begin) / float(kSourceCells);
   cells.total = 0.0;
-  vec4 seen[kSourceCells];  // xyz: T sigma_s; w: change of the largest optical depth per count
+  vec4 estimate[kSourceCells];  // xyz: T sigma_s; w: change of the largest optical depth per count
   float tau_before = 0.0;
   vec3 peak = vec3(1.0e-37, 1.0e-37, 1.0e-37);
   vec3 column = vec3(0.0, 0.0, 0.0);
   for (int j = 0; j < kSourceCells; j++) {
-    CountedPoint point = point_at_count(along.count, along.ray, along.line, along.x_begin + cells.width * (float(j) + 0.5));
+    CountedPoint point =
+        point_at_count(along.count, along.ray, along.line, along.x_begin + cells.width * (float(j) + 0.5));
     vec3 air = densities(atmosphere, point.altitude_km) * point.dt_dx;
     vec3 depth = extinction(atmosphere, column + air * (0.5 * cells.width));
     vec3 light = (atmosphere.rayleigh_scattering * air.x + atmosphere.mie_scattering * air.y) * exp(-depth);
     float tau = max(max(depth.x, depth.y), depth.z);
-    seen[j] = vec4(light, abs(tau - tau_before) / cells.width);
+    estimate[j] = vec4(light, abs(tau - tau_before) / cells.width);
     tau_before = tau;
     column += air * cells.width;
     peak = max(peak, light);
   }
   for (int j = 0; j < kSourceCells; j++) {
-    cells.weight[j] = cell_weight(vec3(seen[j]) / peak, seen[j].w, 1.0);
+    cells.weight[j] = cell_weight(vec3(estimate[j]) / peak, estimate[j].w, 1.0);
     cells.total += cells.weight[j];
   }
   return cells;
 }
 
-// Count at which the first n of so many panels end.
+// Count at which the first n of `panels` panels end.
 float panel_end(SourceRay along, NodeCells cells, int n, int panels) {
-  float wanted = cells.total * float(n) / float(panels);
-  float passed = 0.0;
+  float target = cells.total * float(n) / float(panels);
+  float summed = 0.0;
   for (int j = 0; j < kSourceCells; j++) {
-    float into = (wanted - passed) / cells.weight[j];
-    if (into <= 1.0) return min(along.x_begin + cells.width * (float(j) + into), along.x_end);
-    passed += cells.weight[j];
+    float fraction = (target - summed) / cells.weight[j];
+    if (fraction <= 1.0) return min(along.x_begin + cells.width * (float(j) + fraction), along.x_end);
+    summed += cells.weight[j];
   }
   return along.x_end;
 }
@@ -89,13 +95,15 @@ struct NodePanel {
 };
 
 // [panel_nodes]
-// Panel number `panel` (from 0) of a ray's `panels`: four Gauss nodes, columns up to them as in chapter 05's panels.
+// Panel number `panel` (from 0) of a ray's `panels`: four Gauss nodes, with columns up to each as in chapter 05's
+// panels.
 NodePanel panel_nodes(Atmosphere atmosphere, SourceRay along, int panel, int panels) {
   NodeCells cells = node_cells(atmosphere, along);
   float x_a = panel_end(along, cells, panel, panels);
   float dx = panel_end(along, cells, panel + 1, panels) - x_a;
   vec3 before = panel > 0 ? columns_to_count(atmosphere, along.ray, along.line, along.count, x_a) : vec3(0.0, 0.0, 0.0);
-  float ozone_begin = ozone_from_tangent(atmosphere, along.line, along.ray.altitude_km, (atmosphere.ground_radius_km + along.ray.altitude_km) * along.ray.mu);
+  float ozone_begin = ozone_from_tangent(atmosphere, along.line, along.ray.altitude_km,
+                                         (atmosphere.ground_radius_km + along.ray.altitude_km) * along.ray.mu);
   NodePanel result;
   vec4 rayleigh;
   vec4 mie;
@@ -109,17 +117,17 @@ NodePanel panel_nodes(Atmosphere atmosphere, SourceRay along, int panel, int pan
     result.node[i] = node_at(atmosphere, along.ray, point.altitude_km, point.t_km);
   }
   if (!along.ray.hits_air || along.x_end <= along.x_begin) return result;
-  vec2 passed = vec2(0.0, 0.0);
-  float passed_width = 0.0;
+  vec2 summed = vec2(0.0, 0.0);
+  float summed_width = 0.0;
   for (int i = 0; i < 4; i++) {
     vec2 air = vec2(rayleigh[i], mie[i]);
-    vec2 inside = column_inside(rayleigh, mie, i, (passed + air * (kGauss4Node[i] - passed_width)) * 0.5);
-    passed += air * kGauss4Weight[i];
-    passed_width += kGauss4Weight[i];
+    vec2 inside = column_inside(rayleigh, mie, i, (summed + air * (kGauss4Node[i] - summed_width)) * 0.5);
+    summed += air * kGauss4Weight[i];
+    summed_width += kGauss4Weight[i];
     vec3 column = vec3(before.x + inside.x, before.y + inside.y, ozone[i] - ozone_begin);
-    vec3 reaches = exp(-extinction(atmosphere, column)) * kGauss4Weight[i];
-    result.node[i].molecules = vec4(atmosphere.rayleigh_scattering * air.x * reaches, 0.0);
-    result.node[i].aerosol = vec4(atmosphere.mie_scattering * air.y * reaches, 0.0);
+    vec3 weighted_transmittance = exp(-extinction(atmosphere, column)) * kGauss4Weight[i];
+    result.node[i].rayleigh = vec4(atmosphere.rayleigh_scattering * air.x * weighted_transmittance, 0.0);
+    result.node[i].mie = vec4(atmosphere.mie_scattering * air.y * weighted_transmittance, 0.0);
   }
   return result;
 }

@@ -1,18 +1,18 @@
-// A workgroup's sum: what the directions bring to one texel. For the entry points that write the table.
+// Sums the light of all directions for one texel, in one workgroup. For the entry points that write the table.
 #ifndef WELKIN_REDUCE_GLSL
 #define WELKIN_REDUCE_GLSL
 
 #include "09_multiple_scattering_lut/gather_block.glsl"
 
-layout(local_size_x = 64) in;  // along x, one workgroup a texel
+layout(local_size_x = 64) in;  // one workgroup per texel
 const int THREADS = 64;
 
-// Threads that share a direction, each with its part of the nodes, where there are fewer directions than threads.
+// Threads per direction, each with a part of its nodes, where there are fewer directions than threads.
 const int PARTS = THREADS > DIRECTIONS ? THREADS / DIRECTIONS : 1;
 
-const int kNumbers = 3 * kLayers;
-shared float partial[THREADS][kNumbers];
-shared float total[kNumbers];
+const int kComponents = 3 * kLayers;
+shared float partial[THREADS][kComponents];
+shared float total[kComponents];
 
 void add(int layer, vec3 value) {
   const uint thread = gl_LocalInvocationID.x;
@@ -22,8 +22,8 @@ void add(int layer, vec3 value) {
 }
 
 // [reduce]
-// Thread k adds up the k-th number of every thread. A tree of halves would take six rounds and a barrier for each, most
-// threads idle; with twenty-one sums to make, everybody has one.
+// Thread k sums component k over all threads. A tree reduction would take six rounds, each with a barrier and most
+// threads idle; here the 21 components give 21 threads a sum each.
 void sum_over_threads(int layers) {
   barrier();
   for (int k = int(gl_LocalInvocationID.x); k < 3 * layers; k += THREADS) {
@@ -38,12 +38,12 @@ vec3 sum_of(int layer) { return vec3(total[3 * layer], total[3 * layer + 1], tot
 // [/reduce]
 
 void clear_sums() {
-  for (int k = 0; k < kNumbers; ++k) partial[gl_LocalInvocationID.x][k] = 0.0;
+  for (int k = 0; k < kComponents; ++k) partial[gl_LocalInvocationID.x][k] = 0.0;
 }
 
 // Adds one direction's light to this thread's sums.
 void add_direction(WeightedDirection direction, vec3 light) {
-  const vec3 d = direction.look;
+  const vec3 d = direction.view;
   const vec3 weighted = light * direction.weight;
   add(0, weighted);
   add(1, weighted * d.z);

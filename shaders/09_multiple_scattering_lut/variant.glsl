@@ -1,5 +1,5 @@
-// What the entry points of chapter 09 share: the constants compiled in, the atmosphere's block and the pure functions. The
-// entry point defines read_multiple_scattering_table() before it includes this.
+// Shared by the entry points of chapter 09: specialization constants, the atmosphere's block and the pure functions.
+// The entry point defines read_multiple_scattering_table() before it includes this file.
 #ifndef WELKIN_MULTIPLE_SCATTERING_VARIANT_GLSL
 #define WELKIN_MULTIPLE_SCATTERING_VARIANT_GLSL
 

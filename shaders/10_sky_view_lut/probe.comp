@@ -1,4 +1,4 @@
-// The rays of --probe that share an altitude and a height of the sun, looked up in the table made for these.
+// Looks up rays of --probe that share an altitude and a sun zenith angle, in the table filled for both.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -20,10 +20,10 @@ layout(binding = 2, std430) readonly buffer Rays {
   Ray rays[];
 };
 layout(binding = 3, std430) writeonly buffer Results {
-  vec4 results[];  // two a ray: radiance, transmittance
+  vec4 results[];  // two per ray: radiance, transmittance
 };
 layout(push_constant) uniform Push {
-  ivec4 range;  // x: first ray, y: how many
+  ivec4 range;  // x: first ray, y: number of rays
 };
 
 void main() {

@@ -1,4 +1,4 @@
-// The sky from the table, and the sun's disc behind the air.
+// Draws the sky from the table, and the sun's disc seen through the air.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define SUN_DISC

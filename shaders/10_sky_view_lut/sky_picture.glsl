@@ -1,4 +1,5 @@
-// One look-up per pixel; with SUN_DISC defined, the sun's disc behind the air. What the scene does not show is not compiled.
+// Draws the sky with one look-up per pixel and, with SUN_DISC defined, the sun's disc seen through the air. A scene
+// without the disc compiles none of its code.
 #ifndef WELKIN_SKY_PICTURE_GLSL
 #define WELKIN_SKY_PICTURE_GLSL
 
@@ -10,7 +11,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #ifdef SUN_DISC
 #define TRANSMITTANCE_BINDING 2
 #include "08_transmittance_lut/table.glsl"
-#define SUN_OPTICAL_DEPTH clear_optical_depth
+#define SUN_OPTICAL_DEPTH optical_depth_to_top
 #include "05_single_scattering/sun_disc.glsl"
 #endif
 layout(constant_id = 6) const float SKY_VIEW_UNIT = 1.0;
@@ -29,7 +30,7 @@ void main() {
   const vec3 view = camera_direction(frame.camera, pixel);
   vec3 radiance = sky_view_radiance(atmosphere.ground_radius_km, frame.camera.altitude_km, view, frame.camera.sun);
 #ifdef SUN_DISC
-  // The disc is too small for any table: it is drawn, through the air that chapter 08's table knows.
+  // The disc is too small for any table: it is drawn, attenuated by chapter 08's transmittance table.
   radiance += sun_disc_light(atmosphere, frame.camera, pixel, view);
 #endif
   imageStore(target, pixel, vec4(radiance, 1.0));

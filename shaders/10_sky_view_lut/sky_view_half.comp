@@ -1,4 +1,4 @@
-// The sky view table in numbers of 16 bits. They end at 6e-8: a night's radiance is stored magnified.
+// Fills the sky view table, in 16-bit floats. Their smallest number is 6e-8: a night's radiance is stored magnified.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(binding = 2, rgba16f) uniform writeonly image2D sky_view;

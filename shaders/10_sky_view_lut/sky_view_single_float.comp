@@ -1,4 +1,4 @@
-// The sky view table of single scattering in numbers of 32 bits.
+// Fills the sky view table with single scattering, in 32-bit floats.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(binding = 2, rgba32f) uniform writeonly image2D sky_view;

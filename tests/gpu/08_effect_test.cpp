@@ -1,5 +1,5 @@
-// Effects on a composition: the sample of CONTRIBUTING.md; what is made anew when; and for every effect there is, that
-// without it nothing of it is there.
+// Effects on a composition: the sample of CONTRIBUTING.md, what is rebuilt after which change, and that each effect,
+// when left out, leaves nothing behind.
 #include <algorithm>
 #include <catch2/catch.hpp>
 
@@ -46,8 +46,8 @@ std::vector<app::Effect> whole_frame() {
   return effects;
 }
 
-// A composition of these effects, and the settings and scene it stands on.
-struct Framed {
+// A composition of the given effects, with its settings and scene.
+struct FrameFixture {
   Scene scene = scene_named("noon");
   Settings settings;
   std::string no_fault;
@@ -58,7 +58,7 @@ struct Framed {
   std::unique_ptr<app::Renderer> renderer;
   uint32_t index = 0;
 
-  explicit Framed(std::vector<app::Effect> effects)
+  explicit FrameFixture(std::vector<app::Effect> effects)
       : settings(app::knobs_of(effects, 11)), pose(app::pose_of(scene.views[0], 6360.0)) {
     scene.terrain->size = 64;
     for (const char* quick :
@@ -80,7 +80,7 @@ TEST_CASE(
     "an effect is one function: the sample of CONTRIBUTING.md darkens the corners, and is not there unless wanted") {
   std::vector<app::Effect> effects = sky_effects();
   effects.push_back(vignette());
-  Framed frame(std::move(effects));
+  FrameFixture frame(std::move(effects));
   frame.draw();
   const Image plain = frame.renderer->picture();
   CHECK(frame.program->graph().order().back() == "sky");
@@ -91,14 +91,14 @@ TEST_CASE(
   CHECK(frame.program->graph().order().back() == "vignette");
   CHECK(dark.pixels[0].r / plain.pixels[0].r ==
         Approx(1.0 - 0.25 * (std::pow(23.0 / 24.0, 2) + std::pow(15.0 / 16.0, 2))).epsilon(1e-4));
-  CHECK(frame.runs("sky view") == 1);  // nothing was computed anew for it
+  CHECK(frame.runs("sky view") == 1);  // the vignette recomputes no table
   frame.settings.set("vignette.strength", "0");
   frame.draw();
   CHECK(frame.renderer->picture().pixels == plain.pixels);
 }
 
 TEST_CASE("keys decide what is made anew: a display knob no table, the air what reads it, terrain the terrain") {
-  Framed frame(whole_frame());
+  FrameFixture frame(whole_frame());
   frame.draw();
   const auto declared = [&] {
     std::vector<uint64_t> counts;
@@ -124,7 +124,7 @@ TEST_CASE("keys decide what is made anew: a display knob no table, the air what 
   frame.scene.terrain->seed = 5;
   frame.draw();
   CHECK(declared() == Counts{1, 1, 1, 1, 2, 2, 2, 2});
-  CHECK(ran() == Counts{2, 2, 3, 2, 3});                   // the sky view, too: the camera stands on other ground
+  CHECK(ran() == Counts{2, 2, 3, 2, 3});                   // also the sky view: the ground under the camera changed
   frame.scene.media.erase(frame.scene.media.begin() + 2);  // no ozone: other variants of all that reads the air
   frame.draw();
   CHECK(declared() == Counts{2, 2, 2, 2, 2, 2, 3, 2});
@@ -149,7 +149,7 @@ TEST_CASE("a program drawn by an effect follows its target and the scene") {
     app::Composition other(context, effects);
     return drawn(other, size);
   };
-  // A picture of one workgroup, gone again, whose handle the next one may get.
+  // The first picture, one workgroup large, is destroyed; the next one may get its handle.
   for (const VkExtent2D size : {VkExtent2D{8, 8}, VkExtent2D{64, 36}, VkExtent2D{8, 8}, VkExtent2D{48, 27}})
     CHECK(drawn(program, size).pixels == fresh(size).pixels);
   scene.medium("mie")->phase = welkin::Phase::draine;
@@ -157,7 +157,7 @@ TEST_CASE("a program drawn by an effect follows its target and the scene") {
 }
 
 TEST_CASE("each effect left out leaves no pass, no byte, no variant, no knob") {
-  Framed whole(whole_frame());
+  FrameFixture whole(whole_frame());
   whole.draw();
   const std::vector<app::Effect> effects = whole_frame();
   int left_out = 0;
@@ -165,11 +165,11 @@ TEST_CASE("each effect left out leaves no pass, no byte, no variant, no knob") {
     CAPTURE(effects[i].name);
     std::vector<app::Effect> others = effects;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-    std::unique_ptr<Framed> without;
+    std::unique_ptr<FrameFixture> without;
     try {
-      without = std::make_unique<Framed>(std::move(others));
+      without = std::make_unique<FrameFixture>(std::move(others));
       without->draw();
-    } catch (const Error& error) {  // others stand on it, and one of them says so: on what it offers, or on its knobs
+    } catch (const Error& error) {  // another effect needs what it offers, or one of its knobs, and says so
       const std::string message = error.what();
       const auto names_it = [&](const Knob& knob) {
         return message.find("unknown knob '" + knob.name + "'") != message.npos;
@@ -184,12 +184,12 @@ TEST_CASE("each effect left out leaves no pass, no byte, no variant, no knob") {
     for (const std::string& pass : whole.program->passes_of(effects[i].name))
       CHECK(std::count(order.begin(), order.end(), pass) == 0);
     for (const std::string& resource : whole.program->resources_of(effects[i].name)) {
-      if (resource == "picture") continue;  // the last effect's is drawn into the target
+      if (resource == "picture") continue;  // the last effect draws into the target
       CHECK(without->program->graph().find_image(resource) == nullptr);
     }
     CHECK(without->program->bytes() < whole.program->bytes());
     CHECK(without->program->pipelines().count() < whole.program->pipelines().count());
   }
-  CHECK(left_out >=
-        5);  // multiple scattering, shadows, froxels, exposure, display at least; of others the frame is made
+  // At least multiple scattering, shadows, froxels, exposure and display can be left out; others are needed.
+  CHECK(left_out >= 5);
 }

@@ -1,5 +1,6 @@
-// What the frame graph makes, on a device: names against shaders, mips, iteration, histories, more passes than a pool
-// of timestamps has; and two hundred frames in which everything changes, under synchronization validation.
+// The frame graph's resources and pipelines on a device: names checked against shaders, mips, iteration, histories,
+// more passes than one pool of timestamps holds, and two hundred frames in which everything changes, under
+// synchronization validation.
 #include <catch2/catch.hpp>
 #include <random>
 
@@ -14,8 +15,8 @@ using namespace welkin::test;
 
 namespace {
 
-// A graph alone, executed outside of any frame.
-struct Alone {
+// A graph without effects, executed outside of any frame.
+struct GraphFixture {
   gpu::Pipelines pipelines{device()};
   graph::Graph graph{device(), pipelines};
   gpu::CommandPool pool = gpu::create_command_pool(device());
@@ -68,16 +69,16 @@ TEST_CASE("graph: a shader says what it has, and a wrong name, type or size is o
   const auto record = [](const graph::Recorder& r) { r.push(1.0f).dispatch(1); };
   const auto try_step = [&](const std::string& shader, gpu::Constants constants,
                             const std::vector<std::pair<std::string, bool>>& names) {
-    Alone alone;
+    GraphFixture fixture;
     graph::Step step{.shader = shader, .constants = std::move(constants), .record = record};
     for (const auto& [name, is_map] : names) {
       const graph::Resource resource =
-          is_map ? alone.graph.add_image(name, {.size = {8, 8}, .format = VK_FORMAT_R32_SFLOAT})
-                 : alone.graph.add_buffer(name, {4});
+          is_map ? fixture.graph.add_image(name, {.size = {8, 8}, .format = VK_FORMAT_R32_SFLOAT})
+                 : fixture.graph.add_buffer(name, {4});
       step.bindings.push_back({name, resource});
-      alone.graph.set_output(resource);
+      fixture.graph.set_output(resource);
     }
-    return alone.refused(std::move(step));
+    return fixture.refused(std::move(step));
   };
   const std::string mip = "tests/08_first_mip.comp";
   CHECK(try_step(mip, {}, {{"map", true}}).find("its push constants are 0 bytes, and 4 were given") !=
@@ -93,9 +94,9 @@ TEST_CASE("graph: a shader says what it has, and a wrong name, type or size is o
 }
 
 TEST_CASE("graph: mips one after the other in one pass, each waiting for the one before") {
-  Alone alone;
+  GraphFixture fixture;
   const graph::Resource map =
-      alone.graph.add_image("map", {.size = {16, 16}, .format = VK_FORMAT_R32_SFLOAT, .mips = 5});
+      fixture.graph.add_image("map", {.size = {16, 16}, .format = VK_FORMAT_R32_SFLOAT, .mips = 5});
   graph::Pass pass{.name = "mips"};
   pass.steps.push_back({.shader = "tests/08_first_mip.comp",
                         .constants = {{"SCALE", 2.0f}},
@@ -105,15 +106,15 @@ TEST_CASE("graph: mips one after the other in one pass, each waiting for the one
     pass.steps.push_back({.shader = "tests/08_next_mip.comp",
                           .bindings = {{"finer", map, {}, mip - 1}, {"coarser", map, {}, mip}},
                           .record = [](const graph::Recorder& r) { r.dispatch(1); }});
-  alone.graph.add(std::move(pass));
-  alone.graph.set_output(map);
-  alone.graph.compile();
-  CHECK(alone.graph.barriers().size() == 9);  // a first layout for each of five, and four reads
-  alone.execute();
-  const gpu::Image& image = alone.graph.image(map);
+  fixture.graph.add(std::move(pass));
+  fixture.graph.set_output(map);
+  fixture.graph.compile();
+  CHECK(fixture.graph.barriers().size() == 9);  // a first layout for each of five, and four reads
+  fixture.execute();
+  const gpu::Image& image = fixture.graph.image(map);
   const gpu::Buffer back =
       gpu::create_buffer(device(), "back", 4, VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Where::readback);
-  gpu::run_once(device(), alone.pool, [&](VkCommandBuffer commands) {
+  gpu::run_once(device(), fixture.pool, [&](VkCommandBuffer commands) {
     const VkBufferImageCopy region{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 4, 0, 1}, .imageExtent = {1, 1, 1}};
     const VkMemoryBarrier2 all{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
                                .srcStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
@@ -167,10 +168,10 @@ TEST_CASE("graph: a history holds last frame's, until a cut, a resize or a frame
 }
 
 TEST_CASE("graph: twenty passes are timed, and each waits for the one before") {
-  Alone alone;
+  GraphFixture fixture;
   std::vector<graph::Resource> maps;
   for (int i = 0; i < 20; ++i) {
-    maps.push_back(alone.graph.add_image("map", {.size = {8, 8}, .format = VK_FORMAT_R32_SFLOAT}));
+    maps.push_back(fixture.graph.add_image("map", {.size = {8, 8}, .format = VK_FORMAT_R32_SFLOAT}));
     graph::Pass pass{.name = "pass " + std::to_string(i)};
     if (i == 0)
       pass.steps.push_back({.shader = "tests/08_first_mip.comp",
@@ -180,19 +181,19 @@ TEST_CASE("graph: twenty passes are timed, and each waits for the one before") {
       pass.steps.push_back({.shader = "tests/08_next_mip.comp",
                             .bindings = {{"finer", maps[i - 1]}, {"coarser", maps[i]}},
                             .record = [](const graph::Recorder& r) { r.dispatch(1); }});
-    alone.graph.add(std::move(pass));
+    fixture.graph.add(std::move(pass));
   }
-  alone.graph.set_output(maps.back());
-  alone.graph.compile();
-  alone.execute();
-  CHECK(alone.timer.read().size() == 20);
-  CHECK(alone.timer.read().back().name == "pass 19");
+  fixture.graph.set_output(maps.back());
+  fixture.graph.compile();
+  fixture.execute();
+  CHECK(fixture.timer.read().size() == 20);
+  CHECK(fixture.timer.read().back().name == "pass 19");
 }
 
-// Everything that can come, go or change, in random order; what a window does over an hour, in half a minute.
+// Adds, removes and changes everything that can be, in random order: an hour of a window's events in half a minute.
 TEST_CASE("08 hard: two hundred frames of resizes, dropped scenes and effects on and off, synchronization validated") {
   gpu::Instance instance(gpu::Validation::sync, {});
-  const gpu::Device watched(instance, gpu::choose_device(gpu::list_devices(instance), ""), false);
+  const gpu::Device validated(instance, gpu::choose_device(gpu::list_devices(instance), ""), false);
   std::vector<app::Effect> effects = whole_frame();
   Scene scene = scene_named("noon");
   Settings settings(app::knobs_of(effects, 11));
@@ -203,7 +204,7 @@ TEST_CASE("08 hard: two hundred frames of resizes, dropped scenes and effects on
     settings.set(name, value);
   }
   const std::string no_fault;
-  const app::Context context{watched, scene, settings, no_fault};
+  const app::Context context{validated, scene, settings, no_fault};
   app::Composition program(context, std::move(effects));
   const app::Chapter chapter;
   std::unique_ptr<app::Renderer> renderer =
@@ -257,7 +258,7 @@ TEST_CASE("08 hard: two hundred frames of resizes, dropped scenes and effects on
     const app::CameraPose pose =
         app::pose_of({.altitude_km = altitude_km, .azimuth_deg = double(frame), .elevation_deg = -5.0}, 6360.0);
     renderer->draw(pose, 0.0, 1, frame);
-    if (frame % 10 == 9) {  // what was made anew piece by piece draws what a program made at once draws
+    if (frame % 10 == 9) {  // the incrementally rebuilt program must draw the same as a fresh one
       const Image got = renderer->picture();
       app::Composition fresh(context, whole_frame());
       app::Renderer fresh_renderer(context, chapter, fresh, {got.width, got.height});

@@ -1,5 +1,5 @@
-// The frame graph: its order, what it leaves out and refuses, and the barriers it derives, without a device; then
-// chapter 08's frames on one: what runs again after what change, and that a frame makes nothing it did not have.
+// The frame graph. Without a device: the order of passes, what is left out or refused, and the derived barriers. On a
+// device, with chapter 08's frames: which passes run again after which change, and that a frame allocates nothing.
 #include <algorithm>
 #include <catch2/catch.hpp>
 
@@ -141,11 +141,11 @@ TEST_CASE("graph: the barriers are these and no others") {
             "table/air: transfer, write -> compute shader, uniform read",      // read after write
             "table/table: nothing -> compute shader, storage write, GENERAL",  // a first layout
             "march/table: compute shader, storage write, GENERAL -> compute shader, sampled read, GENERAL",
-            "march/picture: nothing -> compute shader, storage write, GENERAL",  // air again: nothing, it is visible
+            "march/picture: nothing -> compute shader, storage write, GENERAL",  // none for air: visible already
             "show/picture: compute shader, storage write, GENERAL -> fragment shader, sampled read, READ_ONLY_OPTIMAL",
-            "show/shown: nothing -> compute shader, storage write, GENERAL"});  // table again: nothing
-  // All of it once more: what is written now has been read (execution is enough, nothing to make visible) or, shown,
-  // only written.
+            "show/shown: nothing -> compute shader, storage write, GENERAL"});  // nor for table
+  // The second frame: what is written now was read before (an execution dependency is enough) or, `shown`, only
+  // written.
   CHECK(
       texts(graph, 1) ==
       std::vector<std::string>{
@@ -200,13 +200,13 @@ std::vector<app::Effect> frame_effects() {
   return {air(), transmittance_table(), table_march(), exposure(), display()};
 }
 
-struct World {
+struct SceneFixture {
   Scene scene = load_scene("noon", app::scenes_directory());
   Settings settings = [this] {
     std::vector<Knob> knobs = app::knobs_of(frame_effects(), 8);
     for (Knob& knob : scene_knobs(scene)) knobs.push_back(knob);
     Settings all(knobs);
-    all.set("transmittance.height", "64");  // the tests ask when, not what
+    all.set("transmittance.height", "64");  // these tests check when it is filled, not its values
     return all;
   }();
   std::string no_fault;
@@ -218,12 +218,12 @@ struct World {
 }  // namespace
 
 TEST_CASE("graph: the table is filled once, and again only when the air or its own knobs change") {
-  World world;
-  app::Composition sky(world.context, frame_effects());
-  app::Renderer renderer(world.context, world.chapter, sky, {64, 36});
+  SceneFixture fixture;
+  app::Composition sky(fixture.context, frame_effects());
+  app::Renderer renderer(fixture.context, fixture.chapter, sky, {64, 36});
   uint32_t index = 0;
   const auto frames = [&](int count) {
-    for (int i = 0; i < count; ++i) renderer.draw(world.pose, 0.0, 1, index++);
+    for (int i = 0; i < count; ++i) renderer.draw(fixture.pose, 0.0, 1, index++);
   };
   const auto runs = [&] {
     return std::array<uint64_t, 3>{sky.graph().runs("air"), sky.graph().runs("transmittance"),
@@ -232,40 +232,40 @@ TEST_CASE("graph: the table is filled once, and again only when the air or its o
   using Runs = std::array<uint64_t, 3>;
   frames(5);
   CHECK(runs() == Runs{1, 1, 5});
-  world.scene.media[1].scattering_per_km *= 2.0;  // the air
+  fixture.scene.media[1].scattering_per_km *= 2.0;  // the air
   frames(3);
   CHECK(runs() == Runs{2, 2, 8});
-  world.scene.post.exposure_ev += 1.0;  // not the air
-  world.pose.position_km = {0.0, 0.0, 5.0};
-  world.settings.set("view.steps", "16");
+  fixture.scene.post.exposure_ev += 1.0;  // not the air
+  fixture.pose.position_km = {0.0, 0.0, 5.0};
+  fixture.settings.set("view.steps", "16");
   frames(2);
   CHECK(runs() == Runs{2, 2, 10});
-  world.settings.set("display.curve", "uchimura");  // pipelines are made anew, not the table
+  fixture.settings.set("display.curve", "uchimura");  // pipelines are rebuilt, the table is not
   frames(2);
   CHECK(runs() == Runs{2, 2, 12});
   const Image before = renderer.picture();
-  world.settings.set("transmittance.width", "32");  // another table
+  fixture.settings.set("transmittance.width", "32");  // another table
   frames(2);
   CHECK(runs() == Runs{2, 3, 14});
   CHECK(sky.image("transmittance")->size.width == 32);
   const Image after = renderer.picture();
   CHECK(!std::equal(before.pixels.begin(), before.pixels.end(), after.pixels.begin()));
-  app::Renderer other(world.context, world.chapter, sky, {32, 18});  // another target: the table stays
-  other.draw(world.pose, 0.0, 1, 0);
+  app::Renderer other(fixture.context, fixture.chapter, sky, {32, 18});  // another target: the table stays
+  other.draw(fixture.pose, 0.0, 1, 0);
   CHECK(runs() == Runs{2, 3, 15});
   CHECK(sky.graph().explain().find("transmittance        ran in 3 of 15 frames") != std::string::npos);
 }
 
 TEST_CASE("graph: no allocation by a frame after the first") {
-  World world;
-  app::Composition sky(world.context, frame_effects());
-  app::Renderer renderer(world.context, world.chapter, sky, {64, 36});
-  renderer.draw(world.pose, 0.0, 1, 0);
-  renderer.draw(world.pose, 0.0, 1, 1);
+  SceneFixture fixture;
+  app::Composition sky(fixture.context, frame_effects());
+  app::Renderer renderer(fixture.context, fixture.chapter, sky, {64, 36});
+  renderer.draw(fixture.pose, 0.0, 1, 0);
+  renderer.draw(fixture.pose, 0.0, 1, 1);
   const uint64_t device_before = device().allocation_count();
   const long heap_before = heap_allocations;
   sky.graph().redo();  // every pass runs
-  renderer.draw(world.pose, 0.0, 1, 2);
+  renderer.draw(fixture.pose, 0.0, 1, 2);
   const long heap_by_frame = heap_allocations - heap_before;
   CHECK(device().allocation_count() == device_before);
   CHECK(heap_by_frame == 0);

@@ -12,23 +12,23 @@
 
 namespace welkin::test {
 
-std::vector<LookedUp> look_up(const std::string& scene_name, const Choices& choices, std::span<const Path> paths,
-                              Sampler sampler) {
+std::vector<TableLookup> look_up(const std::string& scene_name, const Choices& choices, std::span<const Path> paths,
+                                 Sampler sampler) {
   const Scene scene = load_scene(scene_name, app::scenes_directory());
   Settings settings(transmittance_knobs());
   for (const auto& [name, text] : choices) settings.set(name, text);
   const std::string no_fault;
   const app::Context context{device(), scene, settings, no_fault};
-  app::Effect looking{.name = "look up", .chapter = 8};
+  app::Effect look_up_effect{.name = "look up", .chapter = 8};
   const gpu::Buffer* out = nullptr;
   graph::Resource results = 0;
-  looking.declare = [&](app::Builder& builder, app::Board& board) {
+  look_up_effect.declare = [&](app::Builder& builder, app::Board& board) {
     const AirBlock& block = *board.find<AirBlock>();
     const TransmittanceTable& table = *board.find<TransmittanceTable>();
     gpu::Buffer in = gpu::create_buffer(device(), "paths", paths.size() * sizeof(glm::vec4),
                                         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::upload);
     for (size_t i = 0; i < paths.size(); ++i) in.as<glm::vec4>()[i] = {paths[i].altitude_km, paths[i].mu, 0.0f, 0.0f};
-    const graph::Resource asked = builder.graph.add_filled("paths", std::move(in));
+    const graph::Resource inputs = builder.graph.add_filled("paths", std::move(in));
     results = builder.graph.add_buffer(
         "results", {paths.size() * 2 * sizeof(glm::vec4), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::readback});
     graph::Pass pass{.name = "look up"};
@@ -37,17 +37,17 @@ std::vector<LookedUp> look_up(const std::string& scene_name, const Choices& choi
         {.shader = sampler == Sampler::coarse ? "tests/08_look_up_coarse.comp" : "tests/08_look_up.comp",
          .constants = joined(block.constants, table.constants),
          .bindings =
-             {{"Air", block.block}, {"transmittance_table", table.image}, {"Inputs", asked}, {"Outputs", results}},
+             {{"Air", block.block}, {"transmittance_table", table.image}, {"Inputs", inputs}, {"Outputs", results}},
          .record = [count](const graph::Recorder& r) { r.push(count).dispatch((count + 63) / 64); }});
     pass.steps.push_back({.accesses = {{results, gpu::kHostRead}}, .record = [](const graph::Recorder&) {}});
     builder.graph.add(std::move(pass));
     builder.graph.set_output(results);
   };
-  app::Composition composition(context, {air(), transmittance_table(), looking});
+  app::Composition composition(context, {air(), transmittance_table(), look_up_effect});
   composition.execute_once();
   out = &composition.graph().buffer(results);
 
-  std::vector<LookedUp> found(paths.size());
+  std::vector<TableLookup> found(paths.size());
   for (size_t i = 0; i < paths.size(); ++i)
     for (int k = 0; k < 3; ++k) {
       found[i].transmittance[k] = out->as<glm::vec4>()[2 * i][k];
@@ -56,11 +56,11 @@ std::vector<LookedUp> look_up(const std::string& scene_name, const Choices& choi
   return found;
 }
 
-std::vector<TruePath> path_rows(const std::string& file) {
+std::vector<ReferencePath> path_rows(const std::string& file) {
   const CsvTable table =
       read_csv(std::string(WELKIN_TEST_DATA "/") + file,
                {"h_km", "view_zenith_deg", "lowest_altitude_km", "tau_r", "tau_g", "tau_b", "T_r", "T_g", "T_b"});
-  std::vector<TruePath> rows;
+  std::vector<ReferencePath> rows;
   for (size_t i = 0; i < table.rows; ++i) {
     const auto at = [&](const char* name) { return table.column(name)[i]; };
     const Path path{float(at("h_km")), float(reference::direction_from_degrees(at("view_zenith_deg"), 0.0)[2])};
@@ -70,10 +70,10 @@ std::vector<TruePath> path_rows(const std::string& file) {
   return rows;
 }
 
-std::vector<TruePath> random_paths(const reference::Planet& planet, uint64_t seed, int count) {
+std::vector<ReferencePath> random_paths(const reference::Planet& planet, uint64_t seed, int count) {
   Random random(seed);
   const double radius = planet.ground_radius_km, top_km = planet.top_radius_km - radius;
-  std::vector<TruePath> paths;
+  std::vector<ReferencePath> paths;
   for (int i = 0; i < count; ++i) {
     double h = i % 2 == 0 ? random.uniform(0.0, top_km) : random.log_uniform(5e-4, top_km);
     if (i % 5 == 4) h = top_km - random.log_uniform(1e-3, 5.0);
@@ -92,7 +92,7 @@ std::vector<TruePath> random_paths(const reference::Planet& planet, uint64_t see
     if (lowest < 0.0 || a > top_km) continue;
     const double rho2 = (top_km - a) * (2.0 * radius + top_km + a), root = std::sqrt(ra * m * ra * m + rho2);
     const auto column = reference::columns(planet, a, m, sine, m >= 0.0 ? rho2 / (ra * m + root) : root - ra * m);
-    TruePath truth{path, lowest, {}, {}};
+    ReferencePath truth{path, lowest, {}, {}};
     for (int k = 0; k < 3; ++k) {
       truth.optical_depth[k] = planet.rayleigh_scattering_per_km[k] * column[0] +
                                planet.mie_extinction_per_km[k] * column[1] +
@@ -104,10 +104,11 @@ std::vector<TruePath> random_paths(const reference::Planet& planet, uint64_t see
   return paths;
 }
 
-double worst_error(const std::string& scene, const Choices& choices, std::span<const TruePath> truth, Sampler sampler) {
+double worst_error(const std::string& scene, const Choices& choices, std::span<const ReferencePath> truth,
+                   Sampler sampler) {
   std::vector<Path> paths;
-  for (const TruePath& one : truth) paths.push_back(one.path);
-  const std::vector<LookedUp> found = look_up(scene, choices, paths, sampler);
+  for (const ReferencePath& one : truth) paths.push_back(one.path);
+  const std::vector<TableLookup> found = look_up(scene, choices, paths, sampler);
   double worst = 0.0;
   for (size_t i = 0; i < truth.size(); ++i)
     for (int k = 0; k < 3; ++k) {

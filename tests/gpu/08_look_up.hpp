@@ -1,4 +1,4 @@
-// What chapter 08's tests share: a planet's table filled on the device, and paths looked up in it by the shader's
+// Shared by chapter 08's tests: fills a planet's table on the device and looks paths up in it with the shader's
 // functions. Units: km.
 #pragma once
 
@@ -18,36 +18,36 @@ struct Path {
   float mu = 1.0f;
 };
 
-struct LookedUp {
+struct TableLookup {
   reference::Rgb transmittance{};  // transmittance_to_top
-  reference::Rgb optical_depth{};  // clear_optical_depth
+  reference::Rgb optical_depth{};  // optical_depth_to_top
 };
 
-using Choices = std::vector<std::pair<std::string, std::string>>;  // knobs set to other than their defaults
+using Choices = std::vector<std::pair<std::string, std::string>>;  // knobs that differ from their defaults
 
 enum class Sampler { device, coarse };  // coarse: weights between texels rounded to 1/256
 
 // scene: "earth" or "alien" of chapters/scenes.
-std::vector<LookedUp> look_up(const std::string& scene, const Choices& choices, std::span<const Path> paths,
-                              Sampler sampler = Sampler::device);
+std::vector<TableLookup> look_up(const std::string& scene, const Choices& choices, std::span<const Path> paths,
+                                 Sampler sampler = Sampler::device);
 
-// A path and what it lets through.
-struct TruePath {
+// A path and its true optical depth and transmittance.
+struct ReferencePath {
   Path path;
   double lowest_km = 0.0;
   reference::Rgb optical_depth{}, transmittance{};
 };
 
 // The rows of tests/data/transmittance_*.csv; the columns are explained there.
-std::vector<TruePath> path_rows(const std::string& file);
+std::vector<ReferencePath> path_rows(const std::string& file);
 
-// Paths that miss the ground, by quadrature in double: a third anywhere, a third at the horizon's rays up to
-// level, a third whose lowest point is 1 m to 30 km above the ground; altitudes from 0.5 m to the top,
-// a fifth of them in the last 5 km.
-std::vector<TruePath> random_paths(const reference::Planet& planet, uint64_t seed, int count);
+// Random paths that miss the ground, with their truth by quadrature in double: a third anywhere, a third between the
+// horizon and the horizontal, a third with a lowest point 1 m to 30 km above the ground. Altitudes from 0.5 m to the
+// top, a fifth of them in the last 5 km.
+std::vector<ReferencePath> random_paths(const reference::Planet& planet, uint64_t seed, int count);
 
 // Largest relative error of the transmittances above 1e-4; NaN counts as 1e30.
-double worst_error(const std::string& scene, const Choices& choices, std::span<const TruePath> truth,
+double worst_error(const std::string& scene, const Choices& choices, std::span<const ReferencePath> truth,
                    Sampler sampler = Sampler::device);
 
 }  // namespace welkin::test

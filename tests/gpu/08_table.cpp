@@ -1,4 +1,4 @@
-// Write the tables of errors on the page of chapter 08:
+// Writes the tables of errors on the page of chapter 08:
 //   WELKIN_TABLE=docs/generated/08_errors.csv gpu_tests "[08_table]"
 //   WELKIN_TABLE=docs/generated/08_texels.csv gpu_tests "[08_texels]"
 #include <fmt/format.h>
@@ -21,9 +21,9 @@ const char* file() {
   return name;
 }
 
-// The errors of a table with these choices: Earth's rows, Earth's random paths, the dense planet's, its random paths.
+// The errors of a table with these choices: on Earth's rows and random paths, then on the dense planet's.
 std::vector<std::string> errors(const Choices& choices, Sampler sampler = Sampler::device) {
-  static const std::vector<TruePath> truth[4]{
+  static const std::vector<ReferencePath> truth[4]{
       path_rows("transmittance_earth.csv"), random_paths(reference::earth(), 8, 4000),
       path_rows("transmittance_alien.csv"), random_paths(reference::dense_alien(), 8, 4000)};
   std::vector<std::string> row;

@@ -1,5 +1,5 @@
-// Where transmittance tables break: named cases, each with the figure of the naive form, which runs in the same
-// shaders, beside that of the form that holds.
+// Hard cases of transmittance tables. Each test gives the error of the naive form, which runs in the same shaders, and
+// that of the robust form.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -19,8 +19,8 @@ std::vector<float> maps(float kind, const std::vector<std::pair<float, float>>& 
   return evaluate("tests/08_maps.comp", inputs, 8, 8, {1});
 }
 
-// A path from altitude h whose lowest point is there, and its truth.
-TruePath dipping(const reference::Planet& planet, double altitude_km, double lowest_km) {
+// A path from altitude_km whose lowest point is at lowest_km, and its truth.
+ReferencePath path_with_lowest_point(const reference::Planet& planet, double altitude_km, double lowest_km) {
   const double radius = planet.ground_radius_km, top_km = planet.top_radius_km - radius;
   const Path path{
       float(altitude_km),
@@ -28,7 +28,7 @@ TruePath dipping(const reference::Planet& planet, double altitude_km, double low
   const double m = path.mu, h = path.altitude_km, sine = std::sqrt((1.0 - m) * (1.0 + m)), r = radius + h;
   const auto column = reference::columns(
       planet, h, m, sine, -r * m + std::sqrt(r * m * r * m + (top_km - h) * (2.0 * radius + top_km + h)));
-  TruePath truth{path, h - r * m * m / (1.0 + sine), {}, {}};
+  ReferencePath truth{path, h - r * m * m / (1.0 + sine), {}, {}};
   for (int k = 0; k < 3; ++k) {
     truth.optical_depth[k] = planet.rayleigh_scattering_per_km[k] * column[0] +
                              planet.mie_extinction_per_km[k] * column[1] +
@@ -43,7 +43,7 @@ const Choices kPublished{
 
 }  // namespace
 
-// The pair that is often copied: (u + 0.5/N) N/(N + 1) one way, (u - 0.5/N) N/(N - 1) the other.
+// The often copied pair: (u + 0.5/N) N/(N + 1) in one direction, (u - 0.5/N) N/(N - 1) in the other.
 TEST_CASE("hard: texel maps that are not inverse of each other") {
   for (float texels : {16.0f, 32.0f, 256.0f}) {
     std::vector<std::pair<float, float>> units;
@@ -82,17 +82,15 @@ TEST_CASE("hard: the horizon's distance from half a metre, as the root of r^2 - 
   CHECK((naive == Approx(0.01179).epsilon(1e-2) || naive == Approx(0.1215).epsilon(1e-2)));
 }
 
-// The ray that grazes: from half a metre, and from 1 m to 99 km, down to where its lowest point is 1 cm above the
-// ground.
+// Grazing rays from altitudes of 0.5 m to 99 km, with lowest points down to 1 cm above the ground.
 TEST_CASE("hard: the ray that just grazes the ground") {
-  std::vector<TruePath> truth;
+  std::vector<ReferencePath> truth;
   for (double altitude_km : {0.0005, 0.001, 0.01, 0.1, 1.0, 5.0, 20.0, 60.0, 99.0})
     for (double lowest_km : {1e-5, 1e-4, 4e-4, 5e-3, 0.05, 0.5})
-      if (lowest_km < altitude_km) truth.push_back(dipping(reference::earth(), altitude_km, lowest_km));
+      if (lowest_km < altitude_km) truth.push_back(path_with_lowest_point(reference::earth(), altitude_km, lowest_km));
   const double naive = worst_error("earth", kPublished, truth), holds = worst_error("earth", {}, truth);
   CAPTURE(naive, holds);
-  CHECK(naive >
-        0.05);  // the published table's last column is a whole kilometre of lowest point wide, seen from the top
+  CHECK(naive > 0.05);  // from the top, the published table's last column spans a kilometre of lowest points
   CHECK(holds < 1e-3);
 }
 
@@ -104,7 +102,7 @@ TEST_CASE("hard: both boundaries") {
   for (float mu : {-1e-7f, -1e-4f, -0.05f}) paths.push_back({100.0f, mu});
   for (float mu : {1.0f, 0.5f, 0.01f, 1e-6f, 0.0f, -1e-7f, -1e-3f, -1.0f}) paths.push_back({0.0f, mu});
   for (const Choices& choices : {Choices{}, kPublished}) {
-    const std::vector<LookedUp> found = look_up(alien ? "alien" : "earth", choices, paths);
+    const std::vector<TableLookup> found = look_up(alien ? "alien" : "earth", choices, paths);
     for (size_t i = 0; i < paths.size(); ++i)
       for (int k = 0; k < 3; ++k) {
         const double mu = paths[i].mu, t = found[i].transmittance[k];
@@ -123,13 +121,14 @@ TEST_CASE("hard: both boundaries") {
   }
 }
 
-// Near the top an optical depth goes like the root of what is left above, which no line between texels follows. Divided
-// by the path's length it does not.
+// Near the top the optical depth varies as the square root of the height of air above, which linear interpolation
+// misses. Divided by the path's length it varies smoothly.
 TEST_CASE("hard: the last kilometre under the top of a dense planet") {
-  std::vector<TruePath> truth;
+  std::vector<ReferencePath> truth;
   for (double below_km : {0.001, 0.01, 0.05, 0.1, 0.2, 0.3, 0.5, 0.8})
     for (double dip : {0.0, 0.1, 0.5})
-      truth.push_back(dipping(reference::dense_alien(), 100.0 - below_km, 100.0 - below_km - dip - 1e-6));
+      truth.push_back(
+          path_with_lowest_point(reference::dense_alien(), 100.0 - below_km, 100.0 - below_km - dip - 1e-6));
   const double naive = worst_error("alien", {{"transmittance.stored", "optical_depth"}}, truth),
                holds = worst_error("alien", {}, truth);
   CAPTURE(naive, holds);
@@ -137,8 +136,8 @@ TEST_CASE("hard: the last kilometre under the top of a dense planet") {
   CHECK(holds < 2e-4);
 }
 
-// Seen from 100 km the sun may stand 10 degrees under the horizontal and still be up. Which suns are, is asked of the
-// lowest point in float32 and compared with double; and what they let through.
+// Seen from 100 km the sun may be 10 degrees below the horizontal and still above the horizon. The float32 test by the
+// lowest point is compared with double.
 TEST_CASE("hard: a sun below the horizontal seen from the top of the air") {
   Random random(4);
   std::vector<Path> paths;
@@ -151,7 +150,7 @@ TEST_CASE("hard: a sun below the horizontal seen from the top of the air") {
     paths.push_back(path);
     lowest.push_back(a - (6360.0 + a) * m * m / (1.0 + std::sqrt((1.0 - m) * (1.0 + m))));
   }
-  const std::vector<LookedUp> found = look_up("earth", {}, paths);
+  const std::vector<TableLookup> found = look_up("earth", {}, paths);
   size_t wrong = 0, up = 0;
   for (size_t i = 0; i < paths.size(); ++i) {
     // From 100 km the lowest point is a difference of numbers near 100: known to a centimetre or two.
@@ -164,11 +163,11 @@ TEST_CASE("hard: a sun below the horizontal seen from the top of the air") {
   CHECK(up > 5000);
 }
 
-// Between the ray that grazes and the one that hits nothing is blended: transmittance falls from what the table holds
-// to 0.
+// Nothing is blended between a ray that grazes the ground and one that hits it: transmittance drops from the table's
+// value to 0.
 TEST_CASE("hard: no light is lost to the ground beside the horizon") {
-  std::vector<TruePath> truth;
-  for (int i = 0; i < 200; ++i) truth.push_back(dipping(reference::earth(), 30.0, 1e-4 + 2e-5 * i));
+  std::vector<ReferencePath> truth;
+  for (int i = 0; i < 200; ++i) truth.push_back(path_with_lowest_point(reference::earth(), 30.0, 1e-4 + 2e-5 * i));
   CHECK(worst_error("earth", {}, truth) < 1e-3);
   std::vector<Path> below;
   for (int i = 1; i < 200; ++i) {
@@ -176,7 +175,7 @@ TEST_CASE("hard: no light is lost to the ground beside the horizon") {
     path.mu -= 1e-6f * float(i);
     below.push_back(path);
   }
-  for (const LookedUp& found : look_up("earth", {}, below)) CHECK(found.transmittance[0] == 0.0);
+  for (const TableLookup& found : look_up("earth", {}, below)) CHECK(found.transmittance[0] == 0.0);
 }
 
 TEST_CASE("hard: a million random paths stay finite and within bounds") {
@@ -191,7 +190,7 @@ TEST_CASE("hard: a million random paths stay finite and within bounds") {
     paths.push_back({h, mu});
   }
   size_t bad = 0;
-  for (const LookedUp& found : look_up(alien ? "alien" : "earth", {}, paths))
+  for (const TableLookup& found : look_up(alien ? "alien" : "earth", {}, paths))
     for (int k = 0; k < 3; ++k)
       bad += !(found.transmittance[k] >= 0.0 && found.transmittance[k] <= 1.0 && found.optical_depth[k] >= 0.0 &&
                std::isfinite(found.optical_depth[k]));

@@ -1,4 +1,4 @@
-// The bright air about the sun, where light is turned aside many times by little, against chapter 07's paths.
+// The aureole, where light is scattered many times by small angles, against chapter 07's path tracer.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -7,8 +7,9 @@
 using namespace welkin;
 using namespace welkin::test;
 
-// Thin haze is right to a percent. In the dense planet's the beam of the scaled air holds light that the aerosol sent
-// ahead; it is scattered once more by the sharp phase function, where the true light is broader already.
+// In thin haze the error is about a percent. On the dense planet the beam of the delta-scaled air includes light that
+// the aerosol scattered forward. It is scattered once more by the sharp phase function, though the true light is
+// already broader.
 TEST_CASE("truth: the bright air about the sun") {
   const bool alien = GENERATE(false, true);
   for (const Aureole& one : aureole(alien ? "alien" : "earth", "32768"))

@@ -1,5 +1,5 @@
-// Hard cases of chapter 09: air that loses nothing, air so thick that hardly anything leaves it, twilight, the top of
-// the air, and air that scatters nothing.
+// Hard cases of chapter 09: air that absorbs nothing, air so thick that hardly any light leaves it, twilight, the top
+// of the air, and air that scatters nothing.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -12,7 +12,7 @@ using namespace welkin::test;
 
 namespace {
 
-// Nothing absorbs, the ground returns everything.
+// Nothing absorbs: no ozone, aerosol of albedo 1, ground of albedo 1.
 Scene furnace(const char* name) {
   Scene scene = orders_scene(name);
   std::erase_if(scene.media, [](const Medium& medium) { return medium.kind == "ozone"; });
@@ -21,9 +21,9 @@ Scene furnace(const char* name) {
   return scene;
 }
 
-// Suns of equal irradiance in every direction make a uniform sky of radiance 1 around the planet, and then it is 1
-// everywhere: 1 = 1/2 int T(mu) dmu + 2 pi int J(mu) dmu at every altitude. Returns the largest departure of the sum,
-// the first integral by the single-order sky's transmittance of the scene without its straight-on share.
+// Suns of equal irradiance in all directions make a uniform environment of radiance 1. The mean radiance is then 1 at
+// every altitude: 1 = 1/2 int T(mu) dmu + 2 pi int J(mu) dmu. Returns the largest departure of the sum from 1. T is the
+// transmittance of the single-scattering sky in delta-scaled air.
 double furnace_error(const char* name, const Choices& choices) {
   const Scene scene = furnace(name);
   const std::vector<TableTexel> texels = table_of(scene, choices);
@@ -39,7 +39,7 @@ double furnace_error(const char* name, const Choices& choices) {
       const double h = texels[y * side].altitude_km, horizon = -std::sqrt(h * (12720.0 + h)) / (6360.0 + h);
       rays.push_back({h, std::acos(cosine(i, horizon)) * 180.0 / 3.14159265358979324, 0.0, 0.0});
     }
-  Scene beam = scene;  // what the table counts as straight on is beam in it
+  Scene beam = scene;  // delta scaled: light scattered straight on belongs to the beam
   const bool scaled = choices.empty() || choices.front().second == "moments";
   if (scaled) {
     const double g = beam.medium("mie")->g;
@@ -48,7 +48,7 @@ double furnace_error(const char* name, const Choices& choices) {
         (1.0 + (1.0 + 2.0 * g * g) / 3.0);
     beam.medium("mie")->scattering_per_km *= 1.0 - chi3;
   }
-  const std::vector<app::ProbeResult> light = sky_of(beam, {{"orders", "1"}}, rays);
+  const std::vector<app::ProbeResult> light = chapter_09_sky(beam, {{"orders", "1"}}, rays);
   double worst = 0.0;
   size_t ray = 0;
   for (size_t y = 0; y < side; y += 2) {
@@ -75,7 +75,7 @@ bool finite(const app::ProbeResult& light) {
 
 }  // namespace
 
-// In isotropic light of radiance 1 a ray of air that loses nothing gathers 1 - T: the transfer never passes 1.
+// In isotropic light of radiance 1 a ray through air that absorbs nothing gathers 1 - T: the transfer never exceeds 1.
 TEST_CASE("hard: the transfer of a ray in air that loses nothing is one minus its transmittance") {
   Random random(91);
   std::vector<OrderPart> parts;
@@ -102,10 +102,10 @@ TEST_CASE("hard: the closed series stays finite when the transfer reaches one") 
   CHECK(at(0.0f) == Approx(0.01));
   CHECK(at(0.5f) == Approx(0.02));
   CHECK(at(1.0f) == Approx(10.0).epsilon(1e-3));
-  CHECK(at(1.01f) == Approx(10.0).epsilon(1e-3));  // the quotient as it is printed: -1
+  CHECK(at(1.01f) == Approx(10.0).epsilon(1e-3));  // the published quotient gives -1
 }
 
-// The white furnace of a table lit by suns from everywhere. Seen: see the numbers beside the bounds.
+// The white furnace: the table lit by suns from all directions.
 TEST_CASE("hard: white furnace") {
   const double earth =
       furnace_error("earth", {{"multiple_scattering.method", "moments"}, {"multiple_scattering.iterations", "20"}});
@@ -122,16 +122,16 @@ TEST_CASE("hard: twilight and the top of the air and the night") {
     for (const double view : {0.0, 60.0, 89.9, 90.0, 90.1, 99.9, 120.0, 180.0})
       for (const double sun : {0.0, 90.0, 96.0, 100.0, 120.0, 180.0}) rays.push_back({h, view, sun, 40.0});
   for (const char* method : {"published", "moments"}) {
-    const std::vector<app::ProbeResult> light = sky_of(scene, {{"multiple_scattering.method", method}}, rays);
+    const std::vector<app::ProbeResult> light = chapter_09_sky(scene, {{"multiple_scattering.method", method}}, rays);
     size_t bad = 0;
     for (const app::ProbeResult& one : light) bad += !finite(one);
     CHECK(bad == 0);
   }
-  // The zenith at -6 and -10 degrees: light there is, although the planet's shadow holds all of the lower air.
+  // With the sun at -6 and -10 degrees there is light although the lower air is in the planet's shadow.
   const std::vector<app::ProbeResult> dusk =
-      sky_of(scene, {}, {{0.0005, 60.0, 96.0, 180.0}, {0.0005, 60.0, 100.0, 180.0}});
+      chapter_09_sky(scene, {}, {{0.0005, 60.0, 96.0, 180.0}, {0.0005, 60.0, 100.0, 180.0}});
   const std::vector<app::ProbeResult> single =
-      sky_of(scene, {{"orders", "1"}}, {{0.0005, 60.0, 96.0, 180.0}, {0.0005, 60.0, 100.0, 180.0}});
+      chapter_09_sky(scene, {{"orders", "1"}}, {{0.0005, 60.0, 96.0, 180.0}, {0.0005, 60.0, 100.0, 180.0}});
   for (int i = 0; i < 2; ++i) CHECK(dusk[i].radiance.z > 1.5 * single[i].radiance.z);
   CHECK(dusk[0].radiance.z > 20.0 * dusk[1].radiance.z);
 }
@@ -141,16 +141,16 @@ TEST_CASE("hard: air that scatters nothing") {
   std::erase_if(scene.media, [](const Medium& medium) { return medium.kind != "ozone"; });
   const std::vector<app::ProbeRay> rays{{0.0, 30.0, 20.0, 0.0}, {10.0, 120.0, 20.0, 0.0}, {100.0, 150.0, 80.0, 90.0}};
   for (const char* method : {"published", "isotropic", "moments"}) {
-    const std::vector<app::ProbeResult> light = sky_of(scene, {{"multiple_scattering.method", method}}, rays);
+    const std::vector<app::ProbeResult> light = chapter_09_sky(scene, {{"multiple_scattering.method", method}}, rays);
     for (const app::ProbeResult& one : light) CHECK(finite(one));
     CHECK(light[0].radiance.x < 1e-20);
     CHECK(light[1].radiance.x > 0.01);  // the lit ground through ozone
   }
 }
 
-// Air of the Earth at a tenth to thirty times its density, and the dense planet: the orders that their optical depth
-// asks for, against 64 of them, wherever the sun is up or up to 4 degrees down. The rule is made for a few percent:
-// what is left is the closing ratio's, in the dark at the bottom of thick air.
+// Earth's air at a tenth to thirty times its density, and the dense planet: the number of orders chosen by optical
+// depth against 64 orders, for suns above -4 degrees. The rule aims at a few percent. The remaining error comes from
+// the extrapolated ratio, in the dark at the bottom of thick air.
 TEST_CASE("hard: thicker air is given more orders, and they are enough") {
   struct Case {
     const char* scene;
@@ -167,7 +167,7 @@ TEST_CASE("hard: thicker air is given more orders, and they are enough") {
     Scene scene = orders_scene(one.scene);
     for (const char* name : {"rayleigh", "mie"})
       scene.medium(name)->scattering_per_km *= one.times, scene.medium(name)->absorption_per_km *= one.times;
-    const int orders = orders_of(make_atmosphere(scene));
+    const int orders = orders_needed(make_atmosphere(scene));
     const std::vector<TableTexel> asked = table_of(scene, {}),
                                   many = table_of(scene, {{"multiple_scattering.iterations", "64"}});
     double worst = 0.0;

@@ -58,7 +58,7 @@ std::vector<std::array<double, 3>> errors_of_rows(float set, int directions, int
   return errors;
 }
 
-// The worst of them for suns down to this zenith angle and cameras up to this altitude.
+// The largest of these errors for suns up to this zenith angle and altitudes up to this one.
 std::array<double, 3> worst_of(const std::vector<std::array<double, 3>>& errors, double sun_zenith_deg,
                                double altitude_km) {
   std::array<double, 3> worst{};
@@ -87,7 +87,8 @@ TEST_CASE("truth: sets of directions weigh all sides the same") {
   CHECK(length < 1e-6);
   CHECK(std::abs(sum - 1.0) < 1e-5);
   CHECK(std::abs(z) < 1e-5);
-  // A finite set errs in x^2 and y^2 by about 1/N; the horizon set is exact but for rounding (with two azimuths, too).
+  // The Fibonacci set errs in x^2 and y^2 by about 1/N; the horizon set is exact but for rounding, even with two
+  // azimuths.
   const double tolerance = set == kHorizon ? 1e-5 : 0.3 / count;
   CHECK(std::abs(zz - 1.0 / 3.0) < tolerance);
   CHECK(std::abs(xx - 1.0 / 3.0) < tolerance);
@@ -108,8 +109,8 @@ TEST_CASE("truth: texel maps and their inverses are inverses") {
     worst = std::fmax(worst, std::abs(results[i][5] - parts[i].values[5]));
   }
   CAPTURE(map, size);
-  CHECK(worst <
-        2e-4);  // texels: the rounding of a coordinate between 0 and 1, times 64; a pair that is none errs by 0.5
+  // In texels: the rounding of a coordinate between 0 and 1, times 64. A pair that is not inverse errs by 0.5.
+  CHECK(worst < 2e-4);
   CHECK(results.front()[0] == Approx(-1.0).epsilon(1e-6));
   CHECK(results.front()[1] == 0.0f);
   CHECK(results.back()[0] == Approx(1.0).epsilon(1e-6));
@@ -120,18 +121,18 @@ TEST_CASE("truth: moments of the aerosol's phase function are its integrals") {
   const double g = GENERATE(-0.5, 0.0, 0.3, 0.8, 0.95);
   const double alpha = GENERATE(0.0, 0.5, 1.0);
   const auto got = evaluate_orders({{{OrderPart::kMoments, 0, float(g), float(alpha)}}})[0];
-  // Midpoints in x, nu = 1 - 2 x^2 (or its mirror): dense where the lobe is.
-  std::array<double, 3> want{};
+  // Midpoints in q, nu = 1 - 2 q^2 (mirrored for g < 0): dense where the lobe is.
+  std::array<double, 3> expected{};
   for (int i = 0; i < 200000; ++i) {
     const double q = (i + 0.5) / 200000, side = g < 0.0 ? -1.0 : 1.0, nu = side * (1.0 - 2.0 * q * q),
                  width = 4.0 * q / 200000;
     const double p = 0.5 * (1 - g * g) / std::pow(1 + g * g - 2 * g * nu, 1.5) * (1 + alpha * nu * nu) /
                      (1 + alpha * (1 + 2 * g * g) / 3);
-    want[0] += width * p * nu, want[1] += width * p * (1.5 * nu * nu - 0.5),
-        want[2] += width * p * (2.5 * nu * nu - 1.5) * nu;
+    expected[0] += width * p * nu, expected[1] += width * p * (1.5 * nu * nu - 0.5),
+        expected[2] += width * p * (2.5 * nu * nu - 1.5) * nu;
   }
   CAPTURE(g, alpha);
-  for (size_t l = 0; l < 3; ++l) CHECK(got[l] == Approx(want[l]).margin(2e-6));
+  for (size_t l = 0; l < 3; ++l) CHECK(got[l] == Approx(expected[l]).margin(2e-6));
 }
 
 // Against the converged columns. Seen, 64 directions: Fibonacci 2.7 %, 3.4 %, 2.8 % up to 2 km, horizon 2.8 %, 1.4

@@ -57,8 +57,8 @@ std::vector<OrderRow> order_rows(const std::string& file) {
   return rows;
 }
 
-std::vector<app::ProbeResult> sky_of(const Scene& scene, const Choices& choices,
-                                     const std::vector<app::ProbeRay>& rays) {
+std::vector<app::ProbeResult> chapter_09_sky(const Scene& scene, const Choices& choices,
+                                             const std::vector<app::ProbeRay>& rays) {
   const Settings settings = settings_of(choices);
   const std::string no_fault;
   return probe_all_orders({device(), scene, settings, no_fault}, rays);
@@ -76,7 +76,7 @@ std::vector<double> sky_of_rows(const std::string& name, Phase phase, const Choi
       if (rows[i].albedo == albedo) rays.push_back(rows[i].ray), places.push_back(i);
     if (rays.empty()) continue;
     scene.planet.ground_albedo = {albedo, albedo, albedo};
-    const std::vector<app::ProbeResult> light = sky_of(scene, choices, rays);
+    const std::vector<app::ProbeResult> light = chapter_09_sky(scene, choices, rays);
     for (size_t i = 0; i < places.size(); ++i) got[places[i]] = light[i].radiance[rows[places[i]].channel];
   }
   return got;
@@ -87,11 +87,11 @@ std::vector<TableTexel> table_of(const Scene& scene, const Choices& choices) {
   settings.set("multiple_scattering.format", "float");
   const std::string no_fault;
   const app::Context context{device(), scene, settings, no_fault};
-  app::Effect kept{.name = "kept", .chapter = 9};
-  kept.declare = [](app::Builder& builder, app::Board& board) {
+  app::Effect keep_table{.name = "kept", .chapter = 9};
+  keep_table.declare = [](app::Builder& builder, app::Board& board) {
     builder.graph.set_output(board.find<MultipleScatteringTable>()->image);
   };
-  app::Composition composition(context, {air(), multiple_scattering_table(), kept});
+  app::Composition composition(context, {air(), multiple_scattering_table(), keep_table});
   composition.execute_once();
   const gpu::Image& image = *composition.image("multiple_scattering");
   const gpu::Buffer back = gpu::create_buffer(device(), "texels", size_t{16} * image.size.width * image.size.height,
@@ -131,7 +131,7 @@ std::vector<Aureole> aureole(const std::string& name, const std::string& paths) 
   settings.set("probe.samples", paths);
   const std::string no_fault;
   const std::vector<app::ProbeResult> truth = probe_paths({device(), scene, settings, no_fault}, rays),
-                                      got = sky_of(scene, {}, rays);
+                                      got = chapter_09_sky(scene, {}, rays);
   std::vector<Aureole> all;
   for (size_t i = 0; i < rays.size(); ++i)
     all.push_back(

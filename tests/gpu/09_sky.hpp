@@ -1,6 +1,6 @@
-// What chapter 09's tests share: the functions of tests/gpu/shaders/09_parts.comp, the chapter's own probe and table
-// for a scene and settings, and rows of the Monte Carlo tables. Units: km, degrees where a name says so, radiance per
-// unit of solar irradiance.
+// Shared by chapter 09's tests: the functions of tests/gpu/shaders/09_parts.comp, the chapter's probe and table for a
+// scene and settings, and the rows of the Monte Carlo tables. Units: km, degrees in names that end in _deg, radiance
+// per unit of solar irradiance.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ struct OrderPart {
 };
 std::vector<std::array<float, 12>> evaluate_orders(const std::vector<OrderPart>& parts);
 
-using Choices = std::vector<std::pair<std::string, std::string>>;  // knobs set to other than their defaults
+using Choices = std::vector<std::pair<std::string, std::string>>;  // knobs that differ from their defaults
 
 // A row of tests/data/multiple_scattering_*.csv: one ray and ground albedo, one channel.
 struct OrderRow {
@@ -34,9 +34,9 @@ std::vector<OrderRow> order_rows(const std::string& file);
 std::vector<double> sky_of_rows(const std::string& scene, Phase phase, const Choices& choices,
                                 const std::vector<OrderRow>& rows);
 
-// Any scene, changed as one likes.
-std::vector<app::ProbeResult> sky_of(const Scene& scene, const Choices& choices,
-                                     const std::vector<app::ProbeRay>& rays);
+// The chapter's probe for any scene and settings.
+std::vector<app::ProbeResult> chapter_09_sky(const Scene& scene, const Choices& choices,
+                                             const std::vector<app::ProbeRay>& rays);
 Scene orders_scene(const std::string& name);
 
 // The texels of the table: mean radiance J and the irradiance from above, in float.
@@ -54,8 +54,8 @@ struct OrderErrors {
 enum class Rows { all, target };  // target: sun above -4 degrees and not within 0.5 degrees of the horizon
 OrderErrors errors_of(const std::vector<OrderRow>& rows, const std::vector<double>& got, Rows which);
 
-// Relative errors of the sky above a sun 45 degrees high, 1 to 40 degrees from it, against so many of chapter 07's
-// paths, and one standard error of theirs.
+// Relative errors of the sky 1 to 40 degrees above a sun at an elevation of 45 degrees, against `paths` paths per ray
+// of chapter 07, and the relative standard error of these.
 struct Aureole {
   double angle_deg;
   glm::dvec3 error, noise;

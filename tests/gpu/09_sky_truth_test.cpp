@@ -1,5 +1,5 @@
 // The sky with all orders against Monte Carlo: tests/data/multiple_scattering_*.csv, every row whose standard error is
-// below 1 %. Bounds are what was seen plus a quarter, so that a step back is noticed.
+// below 1 %. Bounds are the errors seen plus a quarter, so that a regression fails.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -17,7 +17,7 @@ const std::vector<OrderRow>& rows_of(int which) {
   return rows[which];
 }
 
-// A table's rows over one ground: every ground is another table to gather, and takes as long.
+// A file's rows for one ground albedo: each albedo needs its own table, which takes time to gather.
 std::vector<OrderRow> over_ground(int which, double albedo) {
   std::vector<OrderRow> rows;
   for (const OrderRow& row : rows_of(which))
@@ -39,9 +39,10 @@ TEST_CASE("truth: the tables of all orders are whole") {
 }
 
 // The target: Earth, sun above -4 degrees, rays more than 0.5 degrees from the horizon: median 2 %, 95th percentile 6
-// %. Seen: 0.28 % and 3.0 % over black ground, 0.23 % and 2.1 % over grey. All rows, those along the horizon and deep
-// in the dusk, too: 8.7 % over black ground, where what the aerosol sends ahead is taken to come from straight ahead
-// and half of it comes from below (with 64 directions of the horizon's set, at eight times the work, 7.9 %).
+// %. Seen: 0.28 % and 3.0 % over black ground, 0.23 % and 2.1 % over grey. All rows, including those along the horizon
+// and in deep dusk: 8.7 % over black ground. There delta scaling takes the light that the aerosol scatters forward to
+// come from straight ahead, and half of it comes from below. (64 directions of the horizon set, eight times the
+// work: 7.9 %.)
 TEST_CASE("truth: all orders on Earth") {
   const auto [which, albedo] = GENERATE(table<int, double>({{0, 0.0}, {0, 0.3}, {1, 0.3}}));
   const std::vector<OrderRow> rows = over_ground(which, albedo);
@@ -68,7 +69,7 @@ TEST_CASE("truth: all orders on the dense planet") {
   CHECK(all.quantile(1.0) < 0.55);
 }
 
-// What the method as it was published reaches, and that the rungs beyond it more than halve the worst error.
+// The error of the published method, and that each method beyond it more than halves the worst error.
 TEST_CASE("truth: the rungs beyond the published method") {
   const std::vector<OrderRow> rows = over_ground(2, 0.3);
   const auto worst = [&](const char* method) {

@@ -57,7 +57,7 @@ TEST_CASE("table of errors of the methods", "[.][09_table]") {
       {"… 64 texels a side", {{prefix + "size", "64"}}},
       {"… 8 samples along the view", {{prefix + "view_steps", "8"}}}};
   std::vector<std::vector<std::string>> lines;
-  std::vector<Table> all = tables();  // over one ground: every other is another table to gather
+  std::vector<Table> all = tables();  // one ground albedo: each needs its own table
   for (Table& table : all) std::erase_if(table.rows, [](const OrderRow& row) { return row.albedo != 0.3; });
   for (const auto& [name, choices] : variants) {
     std::vector<std::string> line{name};

@@ -1,4 +1,4 @@
-// The sky view table's map against double trigonometry, and against itself there and back.
+// The sky view table's map against trigonometry in double, and its round trip.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -18,17 +18,17 @@ struct Query {
   float width, height, x, y;
 };
 struct Answer {
-  float across, from_horizon, below;
+  float azimuth_coordinate, elevation_coordinate, below_horizon;
   float mu, sine, cos_phi, sin_phi;
   float u, v;
 };
 
-std::vector<Answer> ask(const std::vector<Query>& queries) {
+std::vector<Answer> evaluate_map(const std::vector<Query>& queries) {
   const float* first = &queries.front().altitude;
   const std::vector<float> out =
       evaluate("tests/10_map.comp", std::vector<float>(first, first + 12 * queries.size()), 12, 9);
   std::vector<Answer> answers(queries.size());
-  std::copy(out.begin(), out.end(), &answers.front().across);
+  std::copy(out.begin(), out.end(), &answers.front().azimuth_coordinate);
   return answers;
 }
 
@@ -64,36 +64,36 @@ TEST_CASE("10 map: a direction's place is what trigonometry in double says") {
          0,
          0});
   }
-  const std::vector<Answer> answers = ask(queries);
-  double worst_angle = 0.0, worst_across = 0.0;
+  const std::vector<Answer> answers = evaluate_map(queries);
+  double worst_angle = 0.0, worst_azimuth = 0.0;
   size_t wrong_side = 0;
   for (size_t i = 0; i < queries.size(); ++i) {
     const Query& q = queries[i];
     const double view_zenith = std::atan2(std::hypot(q.view[0], q.view[1]), q.view[2]);
     const double horizon = horizon_zenith(q.altitude), from = horizon - view_zenith;
-    const bool below = answers[i].below > 0.5f;
-    const double range = below ? kPi - horizon : horizon;
+    const bool below_horizon = answers[i].below_horizon > 0.5f;
+    const double range = below_horizon ? kPi - horizon : horizon;
     // Back from the table's coordinate to an angle: 2 atan(n tan(range / 2)), with n = s^2 above the horizon.
-    const double s2 = double{answers[i].from_horizon} * answers[i].from_horizon;
+    const double s2 = double{answers[i].elevation_coordinate} * answers[i].elevation_coordinate;
     const double m = std::max(std::tan(0.5 * (horizon - 0.5 * kPi)), 1e-6), knee = m + std::sqrt(m);
-    const double angle = 2.0 * std::atan((below ? knee * s2 / (1.0 + knee - s2) : s2) * std::tan(0.5 * range));
-    // Towards the nadir an eye near the ground has hardly any rows: there the coordinate is right, to its last digits.
+    const double angle = 2.0 * std::atan((below_horizon ? knee * s2 / (1.0 + knee - s2) : s2) * std::tan(0.5 * range));
+    // An eye near the ground has hardly any rows towards the nadir: there the coordinate is compared, not the angle.
     const double n = std::tan(0.5 * std::abs(from)) / std::tan(0.5 * range);
-    const double right = std::sqrt(below ? n * (1.0 + knee) / (n + knee) : n);
-    if (std::abs(right - answers[i].from_horizon) > 2e-7)
+    const double right = std::sqrt(below_horizon ? n * (1.0 + knee) / (n + knee) : n);
+    if (std::abs(right - answers[i].elevation_coordinate) > 2e-7)
       worst_angle = std::max(worst_angle, std::abs(angle - std::abs(from)));
-    if (below != (from < 0.0) && std::abs(from) > 3e-7) ++wrong_side;
+    if (below_horizon != (from < 0.0) && std::abs(from) > 3e-7) ++wrong_side;
     if (std::hypot(q.view[0], q.view[1]) > 1e-3 && std::hypot(q.sun[0], q.sun[1]) > 1e-3) {
       const double phi = std::atan2(q.view[1], q.view[0]) - std::atan2(q.sun[1], q.sun[0]);
-      worst_across = std::max(worst_across, std::abs(std::abs(std::sin(0.5 * phi)) - answers[i].across));
+      worst_azimuth = std::max(worst_azimuth, std::abs(std::abs(std::sin(0.5 * phi)) - answers[i].azimuth_coordinate));
     }
   }
-  CAPTURE(worst_angle, worst_across);
-  CHECK(wrong_side == 0);  // the horizon is where it is to 3e-7 rad, the rounding of a direction
+  CAPTURE(worst_angle, worst_azimuth);
+  CHECK(wrong_side == 0);  // but for directions within their rounding, 3e-7 rad
   // Float32 directions: a few units of 6e-8, times the range's tangent near the zenith seen from 36 000 km (a factor
   // 13).
   CHECK(worst_angle < 2e-6);
-  CHECK(worst_across < 1e-6);
+  CHECK(worst_azimuth < 1e-6);
 }
 
 TEST_CASE("10 map: texel to direction and back is the texel's centre") {
@@ -111,7 +111,7 @@ TEST_CASE("10 map: texel to direction and back is the texel's centre") {
                        static_cast<float>(random.next() % static_cast<uint32_t>(size[0])),
                        static_cast<float>(random.next() % static_cast<uint32_t>(size[1]))});
   }
-  const std::vector<Answer> answers = ask(queries);
+  const std::vector<Answer> answers = evaluate_map(queries);
   double worst_x = 0.0, worst_y = 0.0, worst_horizon = 0.0, worst_unit = 0.0;
   for (size_t i = 0; i < queries.size(); ++i) {
     const Query& q = queries[i];

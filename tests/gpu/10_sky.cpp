@@ -20,8 +20,8 @@ std::vector<app::Effect> sky_effects() {
   return {air(), transmittance_table(), multiple_scattering_table(), sky_view(), sky()};
 }
 
-std::vector<app::ProbeResult> view_of(const Scene& scene, const Choices& choices,
-                                      const std::vector<app::ProbeRay>& rays) {
+std::vector<app::ProbeResult> chapter_10_sky(const Scene& scene, const Choices& choices,
+                                             const std::vector<app::ProbeRay>& rays) {
   Settings settings(app::knobs_of(sky_effects(), 10));
   for (const auto& [name, text] : choices) settings.set(name, text);
   const std::string no_fault;

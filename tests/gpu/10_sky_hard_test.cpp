@@ -1,5 +1,5 @@
-// Chapter 10 where a table of directions breaks: the sun overhead, the horizon's line, the sun's azimuth, the zenith, a
-// night in 16 bits, the view from space; and what has to run again in a frame.
+// Hard cases of chapter 10's table of directions: the sun overhead, the sharp horizon, the sun's azimuth, the zenith, a
+// night in 16 bits, the view from space; and which passes run again after which change.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ using namespace welkin::test;
 namespace {
 
 const Choices kTable{{"sky_view.method", "table"}};
-// Where the map is in question, and not what chapter 09 puts into it.
+// A cheap table, for tests of the map and not of chapter 09's radiance.
 const Choices kQuick{
     {"sky_view.method", "table"}, {"multiple_scattering.method", "published"}, {"sky_view.size", "96x54"}};
 
@@ -30,7 +30,7 @@ TEST_CASE("10 hard: with the sun overhead the sky has no azimuth") {
   std::vector<app::ProbeRay> rays;
   for (const double zenith : {0.0, 1.0, 30.0, 80.0, 89.9, 90.5, 120.0, 180.0})
     for (const double azimuth : {0.0, 17.0, 90.0, 179.0, 180.0}) rays.push_back({0.002, zenith, 0.0, azimuth});
-  const std::vector<app::ProbeResult> light = view_of(orders_scene("earth"), kQuick, rays);
+  const std::vector<app::ProbeResult> light = chapter_10_sky(orders_scene("earth"), kQuick, rays);
   for (size_t i = 0; i < rays.size(); ++i) {
     CAPTURE(rays[i].view_zenith_deg, rays[i].relative_azimuth_deg);
     CHECK(std::isfinite(light[i].radiance.g));
@@ -50,8 +50,9 @@ TEST_CASE("10 hard: the horizon is a line, not a band") {
             {altitude, 180.0 - std::asin(6360.0 / (6360.0 + altitude)) * 57.29577951308232 + off, sun, 40.0});
         below_horizon_deg.push_back(off);
       }
-  const std::vector<app::ProbeResult> table = view_of(orders_scene("earth"), kTable, rays),
-                                      march = view_of(orders_scene("earth"), {{"sky_view.method", "march"}}, rays);
+  const std::vector<app::ProbeResult> table = chapter_10_sky(orders_scene("earth"), kTable, rays),
+                                      march =
+                                          chapter_10_sky(orders_scene("earth"), {{"sky_view.method", "march"}}, rays);
   for (size_t i = 0; i < rays.size(); ++i) {
     CAPTURE(rays[i].altitude_km, rays[i].sun_zenith_deg, below_horizon_deg[i], table[i].radiance.g,
             march[i].radiance.g);
@@ -61,7 +62,8 @@ TEST_CASE("10 hard: the horizon is a line, not a band") {
 }
 
 // Half a metre up the horizon is 2.5 km away, and 0.02 degrees below it the ground is 500 m away: with the sun 1 degree
-// up nearly all the light there is the air's before it. Rows that the dip does not know take the middle between both.
+// up nearly all the radiance there comes from the air in front of the ground. Rows that ignore the dip would blend the
+// two.
 TEST_CASE("10 hard: just under the horizon the air before the ground is as long as it is") {
   std::vector<app::ProbeRay> rays;
   for (const double altitude : {0.0005, 0.002, 0.1, 1.0, 10.0})
@@ -71,8 +73,9 @@ TEST_CASE("10 hard: just under the horizon the air before the ground is as long 
              {0.0003, 0.001, 0.003, 0.006, 0.01, 0.014, 0.02, 0.03, 0.06, 0.13, 0.3, 1.0, 3.0, 9.0, 30.0})
           rays.push_back(
               {altitude, 180.0 - std::asin(6360.0 / (6360.0 + altitude)) * 57.29577951308232 + below, sun, azimuth});
-  const std::vector<app::ProbeResult> table = view_of(orders_scene("earth"), kTable, rays),
-                                      march = view_of(orders_scene("earth"), {{"sky_view.method", "march"}}, rays);
+  const std::vector<app::ProbeResult> table = chapter_10_sky(orders_scene("earth"), kTable, rays),
+                                      march =
+                                          chapter_10_sky(orders_scene("earth"), {{"sky_view.method", "march"}}, rays);
   double worst[5] = {};
   for (size_t i = 0; i < rays.size(); ++i) {
     const double error = relative(table[i].radiance.g, march[i].radiance.g);
@@ -80,7 +83,7 @@ TEST_CASE("10 hard: just under the horizon the air before the ground is as long 
   }
   CAPTURE(worst[0], worst[1], worst[2], worst[3], worst[4]);
   CHECK(std::max({worst[0], worst[1], worst[2], worst[4]}) < 0.01);
-  CHECK(worst[3] < 0.05);  // a kilometre up with the sun 1 degree down: the shadow's edge is on the ground just there
+  CHECK(worst[3] < 0.05);  // 1 km up with the sun 1 degree down: the shadow's edge on the ground is just there
 }
 
 // A seam would be a change of slope larger than between any other neighbours.
@@ -92,8 +95,8 @@ TEST_CASE("10 hard: no seam at the sun's azimuth, opposite it, or at the zenith"
     for (int i = -kReach; i <= kReach; ++i) rays.push_back({0.002, 75.0, sun, 180.0 + 0.7 * i});
     for (int i = -kReach; i <= kReach; ++i) rays.push_back({0.002, std::abs(0.7 * i), sun, i < 0 ? 120.0 : -60.0});
   }
-  const std::vector<app::ProbeResult> light =
-      view_of(orders_scene("earth"), {{"sky_view.method", "table"}, {"multiple_scattering.method", "published"}}, rays);
+  const std::vector<app::ProbeResult> light = chapter_10_sky(
+      orders_scene("earth"), {{"sky_view.method", "table"}, {"multiple_scattering.method", "published"}}, rays);
   for (size_t line = 0; line < rays.size(); line += kLine) {
     double at_seam = 0.0, elsewhere = 0.0;
     for (int i = 1; i + 1 < kLine; ++i) {
@@ -111,9 +114,9 @@ TEST_CASE("10 hard: no seam at the sun's azimuth, opposite it, or at the zenith"
 TEST_CASE("10 hard: a night keeps its digits in 16 bits") {
   const std::vector<app::ProbeRay> rays = rays_from({0.002}, {100.0, 104.0}, 60, 103);
   const Scene scene = orders_scene("earth");
-  const std::vector<app::ProbeResult> whole = view_of(scene, kTable, rays);
+  const std::vector<app::ProbeResult> whole = chapter_10_sky(scene, kTable, rays);
   const std::vector<app::ProbeResult> half =
-      view_of(scene, {{"sky_view.method", "table"}, {"sky_view.format", "half"}}, rays);
+      chapter_10_sky(scene, {{"sky_view.method", "table"}, {"sky_view.format", "half"}}, rays);
   const std::vector<double> errors = differences(rays, half, whole, 1e-2);
   double naive = 0.0;  // the same radiances in 16 bits as they are
   for (const app::ProbeResult& light : whole)
@@ -132,18 +135,18 @@ TEST_CASE("10 hard: from space the table fails, and is not asked") {
   for (app::ProbeRay& ray : above) ray.altitude_km = 20.001;
   all.insert(all.end(), below.begin(), below.end());
   all.insert(all.end(), above.begin(), above.end());
-  const std::vector<app::ProbeResult> march = view_of(scene, {{"sky_view.method", "march"}}, rays),
-                                      light = view_of(scene, {}, all);
+  const std::vector<app::ProbeResult> march = chapter_10_sky(scene, {{"sky_view.method", "march"}}, rays),
+                                      light = chapter_10_sky(scene, {}, all);
   const auto part = [&](size_t first, size_t count) {
     return std::vector<app::ProbeResult>(light.begin() + static_cast<long>(first),
                                          light.begin() + static_cast<long>(first + count));
   };
-  const std::vector<double> table = differences(rays, view_of(scene, kTable, rays), march),
+  const std::vector<double> table = differences(rays, chapter_10_sky(scene, kTable, rays), march),
                             automatic = differences(rays, part(0, rays.size()), march);
   CAPTURE(quantile(table, 0.95), quantile(table, 1.0));
   CHECK(quantile(table, 1.0) > 0.5);
   CHECK(quantile(automatic, 1.0) == 0.0);
-  // Where it changes from one to the other nothing is to be seen.
+  // At the altitude where the march replaces the table the sky must not jump.
   const std::vector<double> step =
       differences(below, part(rays.size() + below.size(), above.size()), part(rays.size(), below.size()));
   CAPTURE(quantile(step, 0.5), quantile(step, 0.95));
@@ -162,7 +165,7 @@ TEST_CASE("10 hard: nothing that is not a number, from anywhere") {
                         random.uniform(-180.0, 180.0)});
       }
   for (const char* name : {"earth", "alien"})
-    for (const app::ProbeResult& light : view_of(orders_scene(name), kQuick, rays))
+    for (const app::ProbeResult& light : chapter_10_sky(orders_scene(name), kQuick, rays))
       for (int c = 0; c < 3; ++c) {
         CHECK(std::isfinite(light.radiance[c]));
         CHECK(light.radiance[c] >= 0.0);
@@ -200,12 +203,12 @@ TEST_CASE("10 hard: only what changed runs again") {
   pose = app::pose_of({.altitude_km = 3.0}, 6360.0);
   frame(5);
   CHECK(runs("sky view") == 3);
-  pose = app::pose_of({.altitude_km = 400.0}, 6360.0);  // marched: the table rests, whatever changes
+  pose = app::pose_of({.altitude_km = 400.0}, 6360.0);  // marched: the table is not filled, whatever changes
   frame(6);
   scene.planet.ground_albedo.r = 0.5;
   frame(7);
   CHECK((runs("air") == 2 && runs("multiple scattering") == 2 && runs("sky view") == 3 && runs("sky") == 8));
-  pose = app::pose_of({.altitude_km = 3.0}, 6360.0);  // and catches up when it is needed
+  pose = app::pose_of({.altitude_km = 3.0}, 6360.0);  // and is filled again when it is needed
   frame(8);
   CHECK(runs("sky view") == 4);
 }

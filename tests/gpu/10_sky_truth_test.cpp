@@ -1,5 +1,5 @@
 // The sky from the table against Monte Carlo (tests/data/multiple_scattering_*.csv), and against the march it was
-// filled by. Bounds are what was seen and a quarter more, unless a reason stands beside them.
+// filled by. Bounds are the errors seen plus a quarter, unless a comment gives another reason.
 #include <catch2/catch.hpp>
 
 #include "tests/gpu/10_sky.hpp"
@@ -9,7 +9,7 @@ using namespace welkin::test;
 
 namespace {
 
-// The rows of one ground albedo: a table belongs to one ground.
+// The rows of ground albedo 0.3: each albedo needs its own table.
 std::vector<OrderRow> rows_over_ground(const std::string& file) {
   std::vector<OrderRow> rows;
   for (const OrderRow& row : order_rows(file))
@@ -24,7 +24,7 @@ std::vector<double> looked_up(const std::string& scene_name, Phase phase, const 
   scene.planet.ground_albedo = glm::dvec3(0.3);
   std::vector<app::ProbeRay> rays;
   for (const OrderRow& row : rows) rays.push_back(row.ray);
-  const std::vector<app::ProbeResult> light = view_of(scene, choices, rays);
+  const std::vector<app::ProbeResult> light = chapter_10_sky(scene, choices, rays);
   std::vector<double> got;
   for (size_t i = 0; i < rows.size(); ++i) got.push_back(light[i].radiance[rows[i].channel]);
   return got;
@@ -59,11 +59,12 @@ TEST_CASE("10 truth: the looked-up sky of the dense planet against Monte Carlo")
 TEST_CASE("10 truth: the table converges to the march it was filled by, with the square of its texels") {
   const Scene scene = orders_scene("earth");
   const std::vector<app::ProbeRay> rays = rays_from({0.002, 1.0, 10.0}, {20.0, 80.0, 91.0, 97.0}, 60, 101);
-  const std::vector<app::ProbeResult> march = view_of(scene, {{"sky_view.method", "march"}}, rays);
+  const std::vector<app::ProbeResult> march = chapter_10_sky(scene, {{"sky_view.method", "march"}}, rays);
   const auto errors = [&](const char* size, const char* format) {
     return differences(
         rays,
-        view_of(scene, {{"sky_view.method", "table"}, {"sky_view.size", size}, {"sky_view.format", format}}, rays),
+        chapter_10_sky(scene, {{"sky_view.method", "table"}, {"sky_view.size", size}, {"sky_view.format", format}},
+                       rays),
         march);
   };
   const std::vector<double> coarse = errors("96x54", "float"), standard = errors("192x108", "float"),
@@ -87,8 +88,10 @@ TEST_CASE("10 truth: with one order the table holds chapter 05's sky") {
   Choices table = single, march = single;
   table.push_back({"sky_view.method", "table"});
   march.push_back({"sky_view.method", "march"});
-  const std::vector<double> errors = differences(rays, view_of(scene, table, rays), view_of(scene, march, rays));
+  const std::vector<double> errors =
+      differences(rays, chapter_10_sky(scene, table, rays), chapter_10_sky(scene, march, rays));
   CAPTURE(quantile(errors, 0.5), quantile(errors, 0.95));
   CHECK(quantile(errors, 0.5) < 1e-3);
-  CHECK(quantile(errors, 0.95) < 0.02);  // one order has edges, the planet's shadow, that more orders fill
+  CHECK(quantile(errors, 0.95) <
+        0.02);  // single scattering has a sharp edge, the planet's shadow, which higher orders fill
 }

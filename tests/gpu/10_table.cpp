@@ -35,10 +35,10 @@ TEST_CASE("table of errors by altitude", "[.][10_table]") {
   std::vector<std::vector<std::string>> rows;
   for (const double altitude : {0.002, 1.0, 10.0, 20.0, 50.0, 99.0, 400.0}) {
     const std::vector<app::ProbeRay> rays = rays_from({altitude}, {20.0, 80.0, 91.0, 97.0}, 160, 110);
-    const std::vector<app::ProbeResult> march = view_of(scene, {{"sky_view.method", "march"}}, rays);
+    const std::vector<app::ProbeResult> march = chapter_10_sky(scene, {{"sky_view.method", "march"}}, rays);
     for (const char* size : {"96x54", "192x108", "384x216"}) {
-      const std::vector<double> errors =
-          differences(rays, view_of(scene, {{"sky_view.method", "table"}, {"sky_view.size", size}}, rays), march);
+      const std::vector<double> errors = differences(
+          rays, chapter_10_sky(scene, {{"sky_view.method", "table"}, {"sky_view.size", size}}, rays), march);
       rows.push_back({fmt::format("{:g}", altitude), size, fmt::format("{:.2g}", quantile(errors, 0.5)),
                       fmt::format("{:.2g}", quantile(errors, 0.95)), fmt::format("{:.2g}", quantile(errors, 0.99))});
     }
@@ -63,7 +63,7 @@ TEST_CASE("table of errors against Monte Carlo", "[.][10_table]") {
       planet.medium("mie")->phase = phase;
       std::vector<app::ProbeRay> rays;
       for (const OrderRow& row : over_ground) rays.push_back(row.ray);
-      const std::vector<app::ProbeResult> light = view_of(planet, {{"sky_view.method", method}}, rays);
+      const std::vector<app::ProbeResult> light = chapter_10_sky(planet, {{"sky_view.method", method}}, rays);
       std::vector<double> got;
       for (size_t i = 0; i < over_ground.size(); ++i) got.push_back(light[i].radiance[over_ground[i].channel]);
       for (const Rows which : {Rows::target, Rows::all}) {
@@ -93,7 +93,7 @@ TEST_CASE("table of errors by the samples along a texel's ray", "[.][10_table]")
       planet.medium("mie")->phase = Phase::cornette_shanks;
       std::vector<app::ProbeRay> rays;
       for (const OrderRow& row : rows) rays.push_back(row.ray);
-      const std::vector<app::ProbeResult> light = view_of(planet, {{"sky_view.steps", steps}}, rays);
+      const std::vector<app::ProbeResult> light = chapter_10_sky(planet, {{"sky_view.steps", steps}}, rays);
       std::vector<double> got;
       for (size_t i = 0; i < rows.size(); ++i) got.push_back(light[i].radiance[rows[i].channel]);
       const OrderErrors errors = errors_of(rows, got, Rows::target);

@@ -1,4 +1,4 @@
-// Fills a map with the number of each texel.
+// Fills a map with each texel's index.
 #version 460
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 3) const float SCALE = 1.0;

@@ -1,4 +1,4 @@
-// Counts frames in an image: what last frame's holds, and one more; 1 where there is no last frame.
+// Counts frames in an image: last frame's count plus one, or 1 where there is no last frame.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 8, local_size_y = 8) in;

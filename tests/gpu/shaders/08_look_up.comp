@@ -1,4 +1,5 @@
-// Paths looked up in a transmittance table: reads (altitude, mu), writes transmittance_to_top and the optical depth.
+// Looks paths up in a transmittance table: reads (altitude, mu), writes transmittance_to_top() and
+// optical_depth_to_top().
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -13,7 +14,7 @@ layout(binding = 2, std430) readonly buffer Inputs {
   vec4 paths[];
 };
 layout(binding = 3, std430) writeonly buffer Outputs {
-  vec4 results[];  // two a path
+  vec4 results[];  // two per path
 };
 layout(push_constant) uniform Push {
   uint count;
@@ -23,5 +24,5 @@ void main() {
   const uint i = gl_GlobalInvocationID.x;
   if (i >= count) return;
   results[2 * i] = vec4(transmittance_to_top(atmosphere, paths[i].x, paths[i].y), 0.0);
-  results[2 * i + 1] = vec4(clear_optical_depth(atmosphere, paths[i].x, paths[i].y), 0.0);
+  results[2 * i + 1] = vec4(optical_depth_to_top(atmosphere, paths[i].x, paths[i].y), 0.0);
 }

@@ -1,4 +1,4 @@
-// As 08_look_up.comp, on a sampler that rounds its weights to 1/256, as many GPUs do.
+// As 08_look_up.comp, with a sampler that rounds its weights to 1/256, as many GPUs do.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -32,5 +32,5 @@ void main() {
   const uint i = gl_GlobalInvocationID.x;
   if (i >= count) return;
   results[2 * i] = vec4(transmittance_to_top(atmosphere, paths[i].x, paths[i].y), 0.0);
-  results[2 * i + 1] = vec4(clear_optical_depth(atmosphere, paths[i].x, paths[i].y), 0.0);
+  results[2 * i + 1] = vec4(optical_depth_to_top(atmosphere, paths[i].x, paths[i].y), 0.0);
 }

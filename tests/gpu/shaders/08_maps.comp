@@ -1,5 +1,5 @@
-// The texel maps of chapter 08 over arrays, each beside the naive form that the hard cases show failing. Reads eight floats
-// an item: which function, ground radius, top, two arguments, width, height; writes eight.
+// Evaluates the texel maps of chapter 08 over arrays, and the naive forms that the hard cases show failing. Reads eight
+// floats per item: function, ground radius, top, two arguments, width, height. Writes eight.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -28,7 +28,7 @@ void main() {
   Atmosphere air;
   air.ground_radius_km = a[1], air.top_km = a[2];
   const ivec2 size = ivec2(a[5], a[6]);
-  if (a[0] == 0.0) {  // a place of the table, its path, and the place of that path
+  if (a[0] == 0.0) {  // texture coordinates to a path, and back
     const TablePath path = transmittance_path(air, vec2(a[3], a[4]), size);
     const vec2 uv = transmittance_uv(air, path.altitude_km, path.mu, size);
     result[0] = path.altitude_km;
@@ -36,7 +36,7 @@ void main() {
     result[2] = uv.x;
     result[3] = uv.y;
   }
-  if (a[0] == 1.0) {  // a path, its place, and the path of that place
+  if (a[0] == 1.0) {  // a path to texture coordinates, and back
     const vec2 uv = transmittance_uv(air, a[3], a[4], size);
     const TablePath path = transmittance_path(air, uv, size);
     result[0] = uv.x;
@@ -52,7 +52,7 @@ void main() {
   }
   if (a[0] == 3.0) {  // distance to the horizon; then as the root of r^2 - R^2
     const float r = a[1] + a[3];
-    result[0] = touching_chord(a[1], 0.0, a[3]);
+    result[0] = tangent_length(a[1], 0.0, a[3]);
     result[1] = sqrt(max(r * r - a[1] * a[1], 0.0));
   }
   for (int i = 0; i < 8; ++i) outputs[8 * item + i] = result[i];

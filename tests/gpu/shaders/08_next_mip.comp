@@ -1,4 +1,4 @@
-// The next mip: the largest of four.
+// Writes the next mip: the largest of four texels.
 #version 460
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0, r32f) uniform readonly image2D finer;

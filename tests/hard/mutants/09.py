@@ -1,7 +1,7 @@
 """Mutants of chapter 09, multiple scattering: name, file under shaders/, text, what it becomes, test that must fail."""
 MUTANTS = [
     ("the angles of the Fibonacci sphere swapped", "09_multiple_scattering_lut/directions.glsl",
-     "direction.look = vec3(s * cos(phi), s * sin(phi), z);\n  direction.weight = 1.0", "direction.look = vec3(cos(phi) * z, sin(phi) * z, s);\n  direction.weight = 1.0",
+     "direction.view = vec3(s * cos(phi), s * sin(phi), z);\n  direction.weight = 1.0", "direction.view = vec3(cos(phi) * z, sin(phi) * z, s);\n  direction.weight = 1.0",
      "truth: sets of directions weigh all sides the same"),
     ("a texel map and an inverse that are none of each other", "09_multiple_scattering_lut/table.glsl",
      "return unit * (1.0 - 1.0 / size) + vec2(0.5, 0.5) / size;", "return unit + vec2(0.5, 0.5) / size;",
@@ -18,7 +18,7 @@ MUTANTS = [
      "float dx = panel_end(along, cells, panel + 1, panels) - x_a;", "float dx = panel_end(along, cells, min(panel + 1, panels - 1), panels) - x_a;",
      "hard: the transfer of a ray in air that loses nothing is one minus its transmittance"),
     ("the sun at a node turned the wrong way", "09_multiple_scattering_lut/ray_nodes.glsl",
-     "node.place.y * mu + node.place.z * nu", "node.place.y * mu - node.place.z * nu",
+     "node.geometry.y * mu + node.geometry.z * nu", "node.geometry.y * mu - node.geometry.z * nu",
      "truth: second order*"),
     ("the last panel of the source march lost", "09_multiple_scattering_lut/source_march.glsl",
      "for (int n = 1; n <= panels; n++) {", "for (int n = 1; n < panels; n++) {",
