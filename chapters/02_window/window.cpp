@@ -40,7 +40,7 @@ int on_display_lost(void*) {
   _exit(static_cast<int>(Exit::usage));
 }
 
-void watch_display() {
+void handle_display_loss() {
   void* xlib = dlopen("libX11.so.6", RTLD_LAZY | RTLD_NOLOAD);
   if (xlib == nullptr) return;  // another window system
   using SetHandler = int (*(*)(int (*)(void*)))(void*);
@@ -371,7 +371,7 @@ class GlfwWindowSystem : public app::WindowSystem {
   GlfwWindowSystem() {
     if (glfwInit() != GLFW_TRUE)
       fail("cannot open the display: {}; unset DISPLAY or use --headless to draw into a file", last_glfw_error());
-    watch_display();
+    handle_display_loss();
     if (glfwVulkanSupported() != GLFW_TRUE)
       fail("the window library finds no Vulkan loader for windows ({}); use --headless", last_glfw_error());
   }

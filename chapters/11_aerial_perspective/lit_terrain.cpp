@@ -23,7 +23,7 @@ app::Effect lit_terrain() {
   effect.declare = [](app::Builder& builder, app::Board& board) {
     const app::Context& context = builder.context;
     const TerrainMaps& maps = board.get<TerrainMaps>("terrain");
-    const graph::Resource behind = board.get<app::Picture>("a sky").image;
+    const graph::Resource sky_picture = board.get<app::Picture>("a sky").image;
     const Froxels* froxels = board.find<Froxels>();
     const graph::Resource picture = builder.picture(board, "picture");
     graph::Step step = aerial_step(context, board, froxels != nullptr ? "compose.comp" : "compose_march.comp");
@@ -33,7 +33,7 @@ app::Effect lit_terrain() {
     step.bindings.insert(step.bindings.end(), {{"terrain_distance", maps.distance},
                                                {"slope_map", maps.slopes},
                                                {"cover_map", maps.cover},
-                                               {"sky", behind},
+                                               {"sky", sky_picture},
                                                {"target", picture}});
     if (froxels != nullptr)
       step.bindings.insert(step.bindings.end(), {{"froxel_in_scattering", froxels->in_scattering},

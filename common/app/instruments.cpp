@@ -47,7 +47,7 @@ struct Timings {
 };
 
 // Warm-up (on hardware for kWarmUpSeconds at least), then repeated frames until `repeats` or kTimedSeconds, at least 3.
-// Of a path its frames, over and over.
+// For a path: its frames, repeated.
 Timings time_frames(const Session& session, Renderer& renderer, uint32_t warm_up, uint32_t repeats) {
   using Clock = std::chrono::steady_clock;
   const auto seconds_since = [](Clock::time_point then) {

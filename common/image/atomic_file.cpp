@@ -25,7 +25,7 @@ struct Descriptor {
 };
 
 // Where a name leads: a symbolic link is written through, not replaced, also one that leads to nothing yet.
-std::filesystem::path behind_links(const std::filesystem::path& name) {
+std::filesystem::path resolve_symlinks(const std::filesystem::path& name) {
   std::filesystem::path target = name;
   std::error_code error;
   for (int links = 0; std::filesystem::is_symlink(target, error); ++links) {
@@ -39,7 +39,7 @@ std::filesystem::path behind_links(const std::filesystem::path& name) {
 }  // namespace
 
 void write_file_atomically(const std::filesystem::path& file_name, std::string_view contents) {
-  const std::filesystem::path target = behind_links(file_name);
+  const std::filesystem::path target = resolve_symlinks(file_name);
   const std::string name = file_name.string(), target_name = target.string();
   if (!target.has_filename()) fail("cannot write '{}': it names no file", name);
   struct stat info {};

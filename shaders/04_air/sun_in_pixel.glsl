@@ -148,8 +148,8 @@ SunNode sun_node(SunInPixel disc, SunRow row, vec2 horizon, int j) {
   float seen = clamp(above + 0.5 * height, 0.0, height);
   if (seen < height) {
     node.share *= seen / height;
-    vec3 lifted = node.view + up * (0.5 * seen - above);
-    node.view = lifted / length(lifted);
+    vec3 raised_view = node.view + up * (0.5 * seen - above);
+    node.view = raised_view / length(raised_view);
   }
   return node;
 }

@@ -237,7 +237,7 @@ LitCells weighted_cells(Atmosphere atmosphere, AirRay ray, Line line, Scattering
 // The march of the adapted rule: panels share the lit cells by the nodes these ask for, four Gauss nodes integrate each
 // panel, and what lies before an interval enters by its columns alone.
 // The whole ray's transmittance is a quadrature of its own, done only if wanted (1 otherwise).
-RayLight adapted_march(Atmosphere atmosphere, AirRay ray, ScatteringTowardsEye scattering, int view_steps, bool want_transmittance) {
+RayLight adapted_march(Atmosphere atmosphere, AirRay ray, ScatteringTowardsEye scattering, int view_steps, bool with_transmittance) {
   Line line = line_through(atmosphere.ground_radius_km, ray.altitude_km, ray.mu, ray.sine);
   int panels = max((view_steps + 3) / 4, 1);
   LitCells along = lit_cells(atmosphere, ray, line, clamp(2 * panels, 8, kMaxCells));
@@ -282,7 +282,7 @@ RayLight adapted_march(Atmosphere atmosphere, AirRay ray, ScatteringTowardsEye s
     result.radiance = march.radiance;
   }
   result.transmittance = vec3(1.0, 1.0, 1.0);
-  if (want_transmittance) {
+  if (with_transmittance) {
     result.transmittance = exp(-extinction(atmosphere, columns_to_count(atmosphere, ray, line, along.count, along.x_end)));
   }
   return result;

@@ -30,9 +30,9 @@ vec3 lit_ground(Atmosphere atmosphere, float mu_sun, int light_steps, int rule) 
 //                   to four (and needs four for each of two lit pieces) and has a closed form for the way to the sun
 //   rule            kRuleLeft ... kRuleAdapted
 // A ray that misses the air gives radiance 0 and transmittance 1.
-//   want_transmittance  false where only the radiance is of use: the adapted rule then leaves that work out
+//   with_transmittance  false where only the radiance is of use: the adapted rule then leaves that work out
 RayLight scattered_light(Atmosphere atmosphere, float altitude_km, vec3 view_direction, vec3 sun_direction, int view_steps,
-                         int light_steps, int rule, bool want_transmittance) {
+                         int light_steps, int rule, bool with_transmittance) {
   int view_count = max(view_steps, 1);
   int light_count = max(light_steps, 1);
   if (rule == kRuleGaussLegendre) {
@@ -47,7 +47,7 @@ RayLight scattered_light(Atmosphere atmosphere, float altitude_km, vec3 view_dir
   ScatteringTowardsEye scattering = scattering_towards_eye(atmosphere, one_minus_cosine(view_direction, sun_direction),
                                                            one_minus_cosine(view_direction, sun_direction * -1.0));
   if (rule == kRuleAdapted) {
-    result = adapted_march(atmosphere, ray, scattering, view_count, want_transmittance || ray.hits_ground);
+    result = adapted_march(atmosphere, ray, scattering, view_count, with_transmittance || ray.hits_ground);
   } else {
     result = fixed_march(atmosphere, ray, scattering, view_count, light_count, rule);
   }

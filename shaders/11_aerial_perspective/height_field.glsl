@@ -99,12 +99,12 @@ Hit first_hit(HeightField field, vec3 start_km, vec3 direction, float altitude_k
     vec2 place = vec2((start_km.x + direction.x * t) * scale, (start_km.y + direction.y * t) * scale);
     float climb = (t - nearest_km) / (radius + altitude);  // of altitude, per km
     vec2 speed = vec2(direction.x - place.x * climb / radius, direction.y - place.y * climb / radius) * scale;
-    float outside = max(abs(place.x), abs(place.y)) - 0.5 * field.extent_km;
+    float outside_map_km = max(abs(place.x), abs(place.y)) - 0.5 * field.extent_km;
     float patch_km = field.extent_km / float(field.size);
     float beyond = -radius - (start_km.z + direction.z * t);  // the half of the planet that the map is not on
-    if (outside > 0.0 || beyond > 0.0) {
-      outside = outside > 0.0 ? outside / max(max(abs(speed.x), abs(speed.y)), 1.0e-6) : 0.0;
-      float step_km = max(max(outside, beyond), kBeyondEdge * patch_km);  // no further than the map's square can be
+    if (outside_map_km > 0.0 || beyond > 0.0) {
+      float to_map_km = outside_map_km > 0.0 ? outside_map_km / max(max(abs(speed.x), abs(speed.y)), 1.0e-6) : 0.0;
+      float step_km = max(max(to_map_km, beyond), kBeyondEdge * patch_km);  // at most as far as the edge of the map
       float lowest = altitude_along(radius, altitude_km, mu, clamp(nearest_km, t, t + step_km));
       if (lowest < -kDrowned_km) return hit;
       t += step_km;

@@ -163,10 +163,10 @@ std::vector<std::array<float, 8>> evaluate_parts(std::span<const Part> parts) {
   return results;
 }
 
-void Errors::add(const reference::Rgb& got, const reference::Rgb& want, double floor) {
+void Errors::add(const reference::Rgb& got, const reference::Rgb& expected, double floor) {
   for (int i = 0; i < 3; ++i) {
-    if (!(want[i] > floor)) continue;
-    const double error = std::abs(got[i] / want[i] - 1.0);
+    if (!(expected[i] > floor)) continue;
+    const double error = std::abs(got[i] / expected[i] - 1.0);
     values.push_back(error >= 0.0 ? error : 1e30);  // NaN counts as an error, not as absent
   }
 }

@@ -85,7 +85,7 @@ SkyRay ray_from_degrees(double altitude_km, double view_zenith_deg, double sun_z
 // Relative errors of radiance, one per channel above the floor; and their statistics.
 struct Errors {
   std::vector<double> values;
-  void add(const reference::Rgb& got, const reference::Rgb& want, double floor);
+  void add(const reference::Rgb& got, const reference::Rgb& expected, double floor);
   double maximum() const;
   double quantile(double share) const;
 };

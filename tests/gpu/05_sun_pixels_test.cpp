@@ -104,9 +104,9 @@ glm::dvec3 truth(const Shot& shot, const std::function<glm::dvec3(double)>& thro
   return sum;
 }
 
-double worst(const glm::dvec3& got, const glm::dvec3& want) {
+double worst(const glm::dvec3& got, const glm::dvec3& expected) {
   double error = 0.0;
-  for (int k = 0; k < 3; ++k) error = std::max(error, std::abs(got[k] / want[k] - 1.0));
+  for (int k = 0; k < 3; ++k) error = std::max(error, std::abs(got[k] / expected[k] - 1.0));
   return error;
 }
 
@@ -125,14 +125,14 @@ TEST_CASE("sun pixels: pictures of every size hold the disc's light") {
           const Shot shot{azimuth, elevation, fov, 90.0 - elevation - 0.21 * fov, azimuth + 0.3 * fov};
           if (shot.sun_zenith > 85.0) continue;
           const Totals totals = draw(shot, size, false);
-          const glm::dvec3 want = truth(
+          const glm::dvec3 expected = truth(
               shot, [](double) { return glm::dvec3(1.0); }, 100);
           const CameraRays camera = shot.camera(size);
           CHECK(
-              want.g ==
+              expected.g ==
               Approx(1.0 / std::pow(glm::dot(glm::dvec3(camera.sun), glm::dvec3(camera.forward)), 3.0)).epsilon(1e-3));
-          drawn = std::max(drawn, worst(totals.drawn, want));
-          middle = std::max(middle, worst(totals.middle, want));
+          drawn = std::max(drawn, worst(totals.drawn, expected));
+          middle = std::max(middle, worst(totals.middle, expected));
           gone += totals.middle.g == 0.0;
           ++shots;
         }
@@ -162,12 +162,12 @@ TEST_CASE("sun pixels: the horizon cuts the disc, on the ground and in space") {
     for (const double above_deg : {0.2, 0.05, 0.0, -0.1, -0.2})
       for (const glm::uvec2 size : kSizes) {
         const Shot shot{20.0, -dip - 6.0, 60.0, 90.0 + dip - above_deg, 41.0, altitude_km};
-        const glm::dvec3 want = truth(
+        const glm::dvec3 expected = truth(
             shot, [&](double mu) { return glm::dvec3(mu > horizon ? 1.0 : 0.0); }, 800);
         const glm::dvec3 whole = truth(
             shot, [&](double) { return glm::dvec3(1.0); }, 100);
-        const glm::dvec3 error = glm::abs(draw(shot, size, false).drawn - want) / whole;
-        CAPTURE(altitude_km, above_deg, size.x, error.r, error.g, error.b, want.g / whole.g);
+        const glm::dvec3 error = glm::abs(draw(shot, size, false).drawn - expected) / whole;
+        CAPTURE(altitude_km, above_deg, size.x, error.r, error.g, error.b, expected.g / whole.g);
         CHECK(std::max({error.r, error.g, error.b}) < 6e-3);
       }
   }
@@ -187,14 +187,14 @@ TEST_CASE("sun pixels: behind the air") {
         const auto t = reference::transmittance_to_top(planet, 0.0005, low + (high - low) * i / kSteps);
         depths.push_back({std::log(t[0]), std::log(t[1]), std::log(t[2])});
       }
-      const glm::dvec3 want = truth(shot, [&](double mu) {
+      const glm::dvec3 expected = truth(shot, [&](double mu) {
         const double place = (mu - low) / (high - low) * kSteps;
         if (place < 0.0) return glm::dvec3(0.0);
         const int i = std::min(int(place), kSteps - 1);
         return glm::exp(glm::mix(depths[i], depths[i + 1], place - i));
       });
       const glm::dvec3 drawn = draw(shot, size, true).drawn;
-      const glm::dvec3 error = glm::abs(drawn - want) / std::max({want.r, want.g, want.b});
+      const glm::dvec3 error = glm::abs(drawn - expected) / std::max({expected.r, expected.g, expected.b});
       CAPTURE(zenith, size.x, error.r, error.g, error.b);
       CHECK(std::max({error.r, error.g, error.b}) < 6e-3);
     }

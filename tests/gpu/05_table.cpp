@@ -31,9 +31,9 @@ TEST_CASE("table of errors of the rules", "[.][05_table]") {
             {.view_steps = view_steps, .light_steps = light_steps, .rule = static_cast<Rule>(rule), .albedo = 0.3});
         Errors errors;
         for (size_t i = 0; i < lights.size(); ++i) {
-          reference::Rgb want = tables[planet][i].henyey_greenstein;
-          for (int k = 0; k < 3; ++k) want[k] += 0.3 * tables[planet][i].ground1[k];
-          errors.add(lights[i].radiance, want, 1e-6 * tables[planet][i].sky_maximum);
+          reference::Rgb expected = tables[planet][i].henyey_greenstein;
+          for (int k = 0; k < 3; ++k) expected[k] += 0.3 * tables[planet][i].ground1[k];
+          errors.add(lights[i].radiance, expected, 1e-6 * tables[planet][i].sky_maximum);
         }
         for (double error : {errors.maximum(), errors.quantile(0.99), errors.quantile(0.5)})
           row.push_back(error < 0.995 ? fmt::format("{:.2g}", 100.0 * error) : fmt::format("{:.0f}", 100.0 * error));

@@ -40,15 +40,15 @@ Score score(const Table& truth, const March& march) {
   Score result;
   for (size_t i = 0; i < lights.size(); ++i) {
     const TruthRow& row = truth.rows[i];
-    reference::Rgb want = march.phase == kCornetteShanks ? row.cornette_shanks : row.henyey_greenstein;
+    reference::Rgb expected = march.phase == kCornetteShanks ? row.cornette_shanks : row.henyey_greenstein;
     for (int k = 0; k < 3; ++k) {
-      want[k] += march.albedo * row.ground1[k];
+      expected[k] += march.albedo * row.ground1[k];
       const double difference = std::abs(lights[i].transmittance[k] - row.transmittance[k]);
       result.transmittance_absolute = std::fmax(result.transmittance_absolute, difference >= 0.0 ? difference : 1e30);
       if (row.transmittance[k] > 1e-6)
         result.transmittance_relative = std::fmax(result.transmittance_relative, difference / row.transmittance[k]);
     }
-    result.radiance.add(lights[i].radiance, want, 1e-6 * row.sky_maximum);
+    result.radiance.add(lights[i].radiance, expected, 1e-6 * row.sky_maximum);
   }
   return result;
 }

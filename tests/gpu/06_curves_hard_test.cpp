@@ -67,9 +67,9 @@ TEST_CASE("hard: Hable's curve of faint light") {
   double naive = 0.0, held = 0.0;
   for (float x : {1e-8f, 1e-7f, 1e-6f, 1e-5f, 1e-4f}) {
     const Answer got = evaluate_items({{{0.0f, 6.0f, x}}}).front();
-    const double want = x * (0.042 * x + 0.005) / (0.3 * (x * (0.15 * double(x) + 0.50) + 0.06));
-    held = std::max(held, std::abs(got.out[2] / want - 1.0));
-    naive = std::max(naive, std::abs(got.out[3] / want - 1.0));
+    const double expected = x * (0.042 * x + 0.005) / (0.3 * (x * (0.15 * double(x) + 0.50) + 0.06));
+    held = std::max(held, std::abs(got.out[2] / expected - 1.0));
+    naive = std::max(naive, std::abs(got.out[3] / expected - 1.0));
   }
   std::printf("Hable for x of 1e-8 to 1e-4: as printed wrong by up to %.0f %%, over one fraction %.1e\n", 100.0 * naive,
               held);

@@ -237,8 +237,8 @@ TEST_CASE("truth: sRGB's curve") {
   for (int i = 0; i <= 4096; ++i) items.push_back({{5.0f, i / 4096.0f, 0.0f}});
   const std::vector<Answer> got = evaluate_items(items);
   for (size_t i = 0; i < got.size(); ++i) {
-    const double x = i / 4096.0, want = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055;
-    REQUIRE(got[i].out[0] == Approx(want).margin(1e-5));
+    const double x = i / 4096.0, expected = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055;
+    REQUIRE(got[i].out[0] == Approx(expected).margin(1e-5));
     REQUIRE(got[i].out[1] == std::floor(255.0 * x + 0.5));  // no noise: to the nearest
   }
 }

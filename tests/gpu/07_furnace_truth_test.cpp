@@ -114,9 +114,9 @@ TEST_CASE("truth: irradiance is the table's") {
       sum += mean.mean[channel], squares += mean.mean[channel] * mean.mean[channel];
     const double mean = sum / kDirections,
                  error = std::sqrt((squares / kDirections - mean * mean) / kDirections) * 3.14159265358979324;
-    const double want = table.column("Einf")[row], want_error = table.column("Einf_se")[row];
-    CAPTURE(row, mean * 3.14159265358979324, error, want, want_error);
-    z.values.push_back((mean * 3.14159265358979324 - want) / std::hypot(error, want_error));
+    const double expected = table.column("Einf")[row], expected_error = table.column("Einf_se")[row];
+    CAPTURE(row, mean * 3.14159265358979324, error, expected, expected_error);
+    z.values.push_back((mean * 3.14159265358979324 - expected) / std::hypot(error, expected_error));
     CHECK(std::abs(z.values.back()) < 4.0);
   }
   CAPTURE(z.values.size(), z.rms(), z.share_within_3());

@@ -32,15 +32,16 @@ TEST_CASE("truth: single scattering is the quadrature's") {
       const std::vector<PathMean> means = trace(planet, rays, {.phase = phase}, 512, 8);
       for (size_t i = 0; i < rays.size(); ++i) {
         const int c = static_cast<int>(i % 3);
-        const double want = (phase == kHenyeyGreenstein ? chosen[i].henyey_greenstein : chosen[i].cornette_shanks)[c] +
-                            0.3 * chosen[i].ground1[c];
-        if (want < std::max(1e-6 * chosen[i].sky_maximum, kDark)) continue;
-        z.values.push_back(score(means[i].mean[c], means[i].error[c], want, 0.0));
+        const double expected =
+            (phase == kHenyeyGreenstein ? chosen[i].henyey_greenstein : chosen[i].cornette_shanks)[c] +
+            0.3 * chosen[i].ground1[c];
+        if (expected < std::max(1e-6 * chosen[i].sky_maximum, kDark)) continue;
+        z.values.push_back(score(means[i].mean[c], means[i].error[c], expected, 0.0));
         if (std::abs(z.values.back()) > 3.0)
           UNSCOPED_INFO("alien " << alien << " phase " << phase << " h " << rays[i].ray.altitude_km << " view "
                                  << rays[i].ray.view[2] << " sun " << rays[i].ray.sun[2] << " channel " << c << ": "
-                                 << means[i].mean[c] << " +- " << means[i].error[c] << ", want " << want << " z "
-                                 << z.values.back());
+                                 << means[i].mean[c] << " +- " << means[i].error[c] << ", expected " << expected
+                                 << " z " << z.values.back());
       }
     }
   }

@@ -112,7 +112,7 @@ TEST_CASE("turns are drawn from the phase functions") {
       const double values[2] = {nu, nu * nu};
       for (int k = 0; k < 2; ++k) sums[k] += values[k] / kCount, squares[k] += values[k] * values[k] / kCount;
     }
-    double want[2] = {}, norm = 0.0;
+    double expected[2] = {}, norm = 0.0;
     constexpr int kNodes = 400000;  // midpoint in an angle that resolves g = 0.999
     for (int i = 0; i < kNodes; ++i) {
       const double theta = 3.14159265358979324 * std::pow((i + 0.5) / kNodes, 2.0),
@@ -128,12 +128,12 @@ TEST_CASE("turns are drawn from the phase functions") {
               reference::henyey_greenstein(nu, one.second_g) * one.shape;
       }
       const double share = p * 2.0 * 3.14159265358979324 * std::sin(theta) * dtheta;
-      norm += share, want[0] += share * nu, want[1] += share * nu * nu;
+      norm += share, expected[0] += share * nu, expected[1] += share * nu * nu;
     }
     REQUIRE(norm == Approx(1.0).epsilon(1e-4));
-    CAPTURE(one.mie, one.phase, one.g, sums[0], want[0], sums[1], want[1]);
+    CAPTURE(one.mie, one.phase, one.g, sums[0], expected[0], sums[1], expected[1]);
     for (int k = 0; k < 2; ++k)
-      CHECK(std::abs(sums[k] - want[k]) <
+      CHECK(std::abs(sums[k] - expected[k]) <
             4.0 * std::sqrt(std::max(squares[k] - sums[k] * sums[k], 0.0) / kCount) + 1e-5);
   }
 }
@@ -183,7 +183,7 @@ TEST_CASE("truth: tracked transmittance is the integral") {
   const std::vector<Item> results = parts(items, kHenyeyGreenstein, tracking);
   ZScores z;
   for (size_t place = 0; place < places.size(); ++place) {
-    const reference::Rgb want =
+    const reference::Rgb expected =
         reference::transmittance_to_top(reference::earth(), places[place].first, places[place].second);
     for (int c = 0; c < 3; ++c) {
       double sum = 0.0, squares = 0.0;
@@ -193,14 +193,14 @@ TEST_CASE("truth: tracked transmittance is the integral") {
         sum += r[c] / 2048.0, squares += r[4 + c] / 2048.0;
       }
       const double error = std::sqrt(std::max(squares - sum * sum, 0.0) / 2047.0);
-      CAPTURE(tracking, places[place].first, places[place].second, c, sum, error, want[c]);
+      CAPTURE(tracking, places[place].first, places[place].second, c, sum, error, expected[c]);
       // Where hardly anything arrives, ratio tracking is a product of many small numbers and one large one in
       // thousands.
-      if (want[c] < 2e-3) {
-        CHECK(std::abs(sum - want[c]) < 2e-3);
+      if (expected[c] < 2e-3) {
+        CHECK(std::abs(sum - expected[c]) < 2e-3);
         continue;
       }
-      z.values.push_back((sum - want[c]) / std::sqrt(error * error + 1e-9 * want[c] * want[c]));
+      z.values.push_back((sum - expected[c]) / std::sqrt(error * error + 1e-9 * expected[c] * expected[c]));
       CHECK(std::abs(z.values.back()) < 4.0);
     }
   }

@@ -124,16 +124,16 @@ UnfoundLight unfound_light() {
     if (row.channel == 2 && row.ray.ray.altitude_km < 0.001 && row.ray.ray.view[2] > 0.08 &&
         row.ray.ray.view[2] < 0.09 && row.ray.ray.sun[2] > 0.03 && row.ray.ray.sun[2] < 0.04)
       light = {row.ray, row.radiance[0]};
-  REQUIRE(light.want > 0.0);
+  REQUIRE(light.expected > 0.0);
   light.ray.orders = 1;
   return light;
 }
 
 reference::Planet planet_of(bool alien) { return alien ? reference::dense_alien() : reference::earth(); }
 
-double score(double got, double error, double want, double want_error) {
-  const double difference = got - want,
-               combined = std::sqrt(error * error + want_error * want_error + 1e-8 * want * want);
+double score(double got, double error, double expected, double expected_error) {
+  const double difference = got - expected,
+               combined = std::sqrt(error * error + expected_error * expected_error + 1e-8 * expected * expected);
   return combined > 0.0 ? difference / combined : (difference == 0.0 ? 0.0 : 1e9);
 }
 
@@ -161,7 +161,7 @@ void score_rows(const OrdersTable& table, size_t first, size_t stride, int order
                                << rays[i].ray.view[2] << " sun " << rays[i].ray.sun[0] << "," << rays[i].ray.sun[2]
                                << " albedo " << rays[i].albedo[0] << " order " << kOrders[k] << " channel "
                                << row->channel << ": " << means[i].mean[row->channel] << " +- "
-                               << means[i].error[row->channel] << ", want " << row->radiance[k] << " z "
+                               << means[i].error[row->channel] << ", expected " << row->radiance[k] << " z "
                                << z.values.back());
   }
 }

@@ -76,12 +76,12 @@ inline constexpr double kDark = 1e-8;
 // row.
 struct UnfoundLight {
   PathRay ray;
-  double want = 0.0;  // by quadrature
+  double expected = 0.0;  // by quadrature
 };
 UnfoundLight unfound_light();
 
 reference::Planet planet_of(bool alien);
-double score(double got, double error, double want, double want_error);
+double score(double got, double error, double expected, double expected_error);
 
 // Scores rows first, first + stride, … of a table, of one order, or (order < 0) of one order each in turn. An assertion
 // fails for paths that the driver cut.

@@ -219,8 +219,8 @@ TEST_CASE("table of light that no flight finds", "[.][07_unfound_table]") {
     for (const int blocks : {1024, 16384, 262144}) {
       const PathMean mean = trace(reference::dense_alien(), {light.ray}, {.spread = spread}, blocks, 2)[0];
       rows.push_back({spread ? "flights and collisions put anywhere" : "flights alone", fmt::format("{}", 2 * blocks),
-                      fmt::format("{:.3g}", 100.0 * mean.mean[2] / light.want),
-                      fmt::format("{:.2g}", 100.0 * mean.error[2] / light.want)});
+                      fmt::format("{:.3g}", 100.0 * mean.mean[2] / light.expected),
+                      fmt::format("{:.2g}", 100.0 * mean.error[2] / light.expected)});
       fmt::print("{}\n", fmt::join(rows.back(), " "));
     }
   if (file)

@@ -142,10 +142,10 @@ TEST_CASE("truth: paths end on a surface where an image says so") {
       const double mu_sun = c * ray.sun[2] + s * (ray.sun[0] * ray.view[0] + ray.sun[1] * ray.view[1]) / sine;
       const reference::Rgb to_sun =
           reference::transmittance_to_top(planet, altitude_km + d_km * (2.0 * r * mu + d_km) / (r_d + r), mu_sun);
-      reference::Rgb want{};
+      reference::Rgb expected{};
       for (int k = 0; k < 3; ++k)
-        want[k] = light.radiance[k] + light.transmittance[k] * to_sun[k] * ray.sun[2] * 0.4 / 3.14159265358979324;
-      wanted.push_back(want);
+        expected[k] = light.radiance[k] + light.transmittance[k] * to_sun[k] * ray.sun[2] * 0.4 / 3.14159265358979324;
+      wanted.push_back(expected);
       rays.push_back({.ray = ray,
                       .albedo = {0.4, 0.4, 0.4},
                       .orders = 1,

@@ -21,7 +21,7 @@ MUTANTS = [
     ("a bilinear surface without its twist", "11_aerial_perspective/height_field.glsl",
      "float twist = corners.w - corners.z - across;", "float twist = 0.0;", "shadows of a rough map against a march in double*"),
     ("terrain of the other half of the planet", "11_aerial_perspective/height_field.glsl",
-     "if (outside > 0.0 || beyond > 0.0) {", "if (outside > 0.0) {", "hard: no terrain through the planet*"),
+     "if (outside_map_km > 0.0 || beyond > 0.0) {", "if (outside_map_km > 0.0) {", "hard: no terrain through the planet*"),
     ("a shadow's walk that ends after 96 steps", "11_aerial_perspective/height_field.glsl",
      "    level = min(level + 1, field.levels);\n    s += ds;", "    level = 0;\n    if (visits > 96) break;\n    s += ds;",
      "a ridge 50 km away throws the same shadow*"),
