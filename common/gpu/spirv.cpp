@@ -13,22 +13,23 @@ struct Instruction {
   std::vector<uint32_t> words;  // operands
 };
 
-using Decorations = std::map<uint32_t, uint32_t>;  // decoration -> first operand, or 1
+constexpr uint32_t kItself = ~0u;  // in place of a member's number: the id as a whole
 
 struct Module {
   std::map<uint32_t, std::string> names;
-  std::map<uint32_t, Decorations> decorations;
-  std::map<std::pair<uint32_t, uint32_t>, Decorations> member_decorations;
+  // Of an id, or a member of it: decoration -> first operand, or 1.
+  std::map<std::pair<uint32_t, uint32_t>, std::map<uint32_t, uint32_t>> decorations;
   std::map<uint32_t, Instruction> types;  // also constants, by result id
   std::vector<Instruction> variables;     // type, id, storage class
   VkShaderStageFlagBits stage = VK_SHADER_STAGE_COMPUTE_BIT;
 
-  bool decorated(uint32_t id, spv::Decoration which) const {
-    const auto found = decorations.find(id);
+  std::string name(uint32_t id) const { return names.contains(id) ? names.at(id) : ""; }
+  bool decorated(uint32_t id, spv::Decoration which, uint32_t member = kItself) const {
+    const auto found = decorations.find({id, member});
     return found != decorations.end() && found->second.contains(which);
   }
-  uint32_t decoration(uint32_t id, spv::Decoration which, uint32_t otherwise = 0) const {
-    return decorated(id, which) ? decorations.at(id).at(which) : otherwise;
+  uint32_t decoration(uint32_t id, spv::Decoration which, uint32_t member = kItself) const {
+    return decorated(id, which, member) ? decorations.at({id, member}).at(which) : 0;
   }
 };
 
@@ -44,8 +45,8 @@ void take(Module& module, spv::Op op, std::span<const uint32_t> w) {
   switch (op) {
     case spv::OpEntryPoint: module.stage = stage_of(w[0]); break;
     case spv::OpName: module.names[w[0]] = text(&w[1]); break;
-    case spv::OpDecorate: module.decorations[w[0]][w[1]] = w.size() > 2 ? w[2] : 1; break;
-    case spv::OpMemberDecorate: module.member_decorations[{w[0], w[1]}][w[2]] = w.size() > 3 ? w[3] : 1; break;
+    case spv::OpDecorate: module.decorations[{w[0], kItself}][w[1]] = w.size() > 2 ? w[2] : 1; break;
+    case spv::OpMemberDecorate: module.decorations[{w[0], w[1]}][w[2]] = w.size() > 3 ? w[3] : 1; break;
     case spv::OpVariable: module.variables.push_back({op, {w.begin(), w.end()}}); break;
     case spv::OpConstant:
     case spv::OpSpecConstant:
@@ -68,11 +69,9 @@ uint32_t size_of(const Module& module, uint32_t type) {
       return module.decoration(type, spv::DecorationArrayStride) * module.types.at(t.words[2]).words[2];
     case spv::OpTypeStruct: {
       uint32_t end = 0;
-      for (uint32_t member = 0; member + 1 < t.words.size(); ++member) {
-        const auto found = module.member_decorations.find({type, member});
-        const uint32_t offset = found != module.member_decorations.end() ? found->second.at(spv::DecorationOffset) : 0;
-        end = std::max(end, offset + size_of(module, t.words[member + 1]));
-      }
+      for (uint32_t member = 0; member + 1 < t.words.size(); ++member)
+        end = std::max(end,
+                       module.decoration(type, spv::DecorationOffset, member) + size_of(module, t.words[member + 1]));
       return end;
     }
     default: return 0;
@@ -81,10 +80,8 @@ uint32_t size_of(const Module& module, uint32_t type) {
 
 // True if the block, or every member of it, carries the decoration.
 bool block_is(const Module& module, uint32_t type, spv::Decoration which) {
-  for (uint32_t member = 0; member + 1 < module.types.at(type).words.size(); ++member) {
-    const auto found = module.member_decorations.find({type, member});
-    if (found == module.member_decorations.end() || !found->second.contains(which)) return false;
-  }
+  for (uint32_t member = 0; member + 1 < module.types.at(type).words.size(); ++member)
+    if (!module.decorated(type, which, member)) return false;
   return true;
 }
 
@@ -109,7 +106,7 @@ ShaderBinding binding_of(const Module& module, uint32_t id, uint32_t type, uint3
   ShaderBinding binding{.slot = module.decoration(id, spv::DecorationBinding), .stages = module.stage};
   const Instruction& t = module.types.at(type);
   if (t.op == spv::OpTypeStruct) {
-    binding.name = module.names.contains(type) ? module.names.at(type) : "";
+    binding.name = module.name(type);
     const bool storage =
         storage_class == spv::StorageClassStorageBuffer || module.decorated(type, spv::DecorationBufferBlock);
     binding.type = storage ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER : VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
@@ -118,7 +115,7 @@ ShaderBinding binding_of(const Module& module, uint32_t id, uint32_t type, uint3
     binding.writes = storage && !block_is(module, type, spv::DecorationNonWritable);
     return binding;
   }
-  binding.name = module.names.contains(id) ? module.names.at(id) : "";
+  binding.name = module.name(id);
   const bool sampled = t.op == spv::OpTypeSampledImage;
   const Instruction& image = sampled ? module.types.at(t.words[1]) : t;
   binding.type = sampled ? VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER : VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
@@ -154,8 +151,7 @@ ShaderInterface reflect(std::span<const uint32_t> words, const std::string& shad
     if (!module.decorated(id, spv::DecorationSpecId)) continue;
     const bool real = constant.op == spv::OpSpecConstant && module.types.at(constant.words[0]).op == spv::OpTypeFloat;
     const bool boolean = constant.op != spv::OpSpecConstant;
-    result.constants.push_back({module.names.contains(id) ? module.names.at(id) : "",
-                                module.decoration(id, spv::DecorationSpecId),
+    result.constants.push_back({module.name(id), module.decoration(id, spv::DecorationSpecId),
                                 boolean ? ShaderConstant::Type::boolean
                                 : real  ? ShaderConstant::Type::real
                                         : ShaderConstant::Type::integer});
