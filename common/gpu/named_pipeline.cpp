@@ -38,17 +38,6 @@ SpecializationMap specialize(const std::string& shader, const ShaderInterface& i
   return map;
 }
 
-void make_layouts(const Device& device, NamedPipeline& pipeline) {
-  std::vector<Binding> bindings;
-  for (ShaderBinding& binding : pipeline.bindings) {
-    if (binding.name == kViewBlock) binding.type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC;
-    bindings.push_back({binding.slot, binding.type, binding.stages});
-  }
-  pipeline.set_layout = create_set_layout(device, bindings);
-  pipeline.layout =
-      create_pipeline_layout(device, pipeline.set_layout, VK_SHADER_STAGE_COMPUTE_BIT, pipeline.push_constant_bytes);
-}
-
 }  // namespace
 
 Constants joined(Constants first, const Constants& more) {
@@ -77,13 +66,19 @@ std::shared_ptr<const NamedPipeline> Pipelines::get(const std::string& shader, c
   const auto found = made_.find(key);
   if (found != made_.end()) return found->second;
 
-  const Stage& first = stage(shader);
-  NamedPipeline pipeline{.shader = shader,
-                         .bindings = first.interface.bindings,
-                         .push_constant_bytes = first.interface.push_constant_bytes};
-  make_layouts(device_, pipeline);
-  pipeline.handle = create_compute_handle(device_, shader, first.words, specialize(shader, first.interface, constants),
-                                          pipeline.layout);
+  const auto& [words, interface] = stage(shader);
+  NamedPipeline pipeline{
+      .shader = shader, .bindings = interface.bindings, .push_constant_bytes = interface.push_constant_bytes};
+  std::vector<Binding> slots;
+  for (ShaderBinding& binding : pipeline.bindings) {
+    if (binding.name == kViewBlock) binding.type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC;
+    slots.push_back({binding.slot, binding.type, binding.stages});
+  }
+  ComputePipeline made = create_compute_pipeline(device_, shader, words, slots, pipeline.push_constant_bytes,
+                                                 specialize(shader, interface, constants));
+  pipeline.set_layout = std::move(made.set_layout);
+  pipeline.layout = std::move(made.layout);
+  pipeline.handle = std::move(made.handle);
   return made_.emplace(key, std::make_shared<const NamedPipeline>(std::move(pipeline))).first->second;
 }
 

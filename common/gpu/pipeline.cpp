@@ -59,33 +59,39 @@ ShaderModule create_shader_module(const Device& device, const std::vector<uint32
 }
 
 // [compute]
-PipelineHandle create_compute_handle(const Device& device, const std::string& name, const std::vector<uint32_t>& words,
-                                     const SpecializationMap& constants, VkPipelineLayout layout) {
-  const VkSpecializationInfo special = constants.info();
-  const ShaderModule module = create_shader_module(device, words);  // needed only while the pipeline is made
-  const VkComputePipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-                                         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                                                   .stage = VK_SHADER_STAGE_COMPUTE_BIT,
-                                                   .module = module,
-                                                   .pName = "main",
-                                                   .pSpecializationInfo = &special},
-                                         .layout = layout};
-  VkPipeline handle = VK_NULL_HANDLE;
-  check(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &handle), "vkCreateComputePipelines");
-  device.set_name(VK_OBJECT_TYPE_PIPELINE, handle, name);
-  return PipelineHandle(device, handle);
+static VkPipelineShaderStageCreateInfo stage_of(VkShaderStageFlagBits which, VkShaderModule module,
+                                                const VkSpecializationInfo& constants) {
+  return {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+          .stage = which,
+          .module = module,
+          .pName = "main",
+          .pSpecializationInfo = &constants};
 }
 
-ComputePipeline create_compute_pipeline(const Device& device, const std::string& shader, std::vector<Binding> bindings,
-                                        uint32_t push_constant_bytes, const Specialization& specialization) {
+ComputePipeline create_compute_pipeline(const Device& device, const std::string& name,
+                                        const std::vector<uint32_t>& words, std::vector<Binding> bindings,
+                                        uint32_t push_constant_bytes, const SpecializationMap& constants) {
   ComputePipeline pipeline;
   pipeline.set_layout = create_set_layout(device, bindings);
   pipeline.layout =
       create_pipeline_layout(device, pipeline.set_layout, VK_SHADER_STAGE_COMPUTE_BIT, push_constant_bytes);
   pipeline.bindings = std::move(bindings);
-  pipeline.handle =
-      create_compute_handle(device, shader, load_spirv(shader), numbered(specialization), pipeline.layout);
+  const ShaderModule module = create_shader_module(device, words);  // needed only while the pipeline is made
+  const VkSpecializationInfo special = constants.info();
+  const VkComputePipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+                                         .stage = stage_of(VK_SHADER_STAGE_COMPUTE_BIT, module, special),
+                                         .layout = pipeline.layout};
+  VkPipeline handle = VK_NULL_HANDLE;
+  check(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &handle), "vkCreateComputePipelines");
+  pipeline.handle = PipelineHandle(device, handle);
+  device.set_name(VK_OBJECT_TYPE_PIPELINE, handle, name);
   return pipeline;
+}
+
+ComputePipeline create_compute_pipeline(const Device& device, const std::string& shader, std::vector<Binding> bindings,
+                                        uint32_t push_constant_bytes, const Specialization& specialization) {
+  return create_compute_pipeline(device, shader, load_spirv(shader), std::move(bindings), push_constant_bytes,
+                                 numbered(specialization));
 }
 // [/compute]
 
@@ -96,14 +102,8 @@ PipelineHandle create_graphics_pipeline(const Device& device, const std::string&
   const VkSpecializationInfo special = constants.info();
   const ShaderModule vertex = create_shader_module(device, load_spirv(vertex_shader));
   const ShaderModule fragment = create_shader_module(device, load_spirv(fragment_shader));
-  const auto stage = [&](VkShaderStageFlagBits which, VkShaderModule module) {
-    return VkPipelineShaderStageCreateInfo{.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                                           .stage = which,
-                                           .module = module,
-                                           .pName = "main",
-                                           .pSpecializationInfo = &special};
-  };
-  const std::array stages{stage(VK_SHADER_STAGE_VERTEX_BIT, vertex), stage(VK_SHADER_STAGE_FRAGMENT_BIT, fragment)};
+  const std::array stages{stage_of(VK_SHADER_STAGE_VERTEX_BIT, vertex, special),
+                          stage_of(VK_SHADER_STAGE_FRAGMENT_BIT, fragment, special)};
   const VkPipelineVertexInputStateCreateInfo input{.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
   const VkPipelineInputAssemblyStateCreateInfo assembly{
       .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,

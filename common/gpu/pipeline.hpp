@@ -42,14 +42,15 @@ struct ComputePipeline {
 // `shader` as in load_spirv. push_constant_bytes <= 128, the portable limit.
 ComputePipeline create_compute_pipeline(const Device& device, const std::string& shader, std::vector<Binding> bindings,
                                         uint32_t push_constant_bytes, const Specialization& specialization = {});
+// From a shader's words; its name is for debuggers.
+ComputePipeline create_compute_pipeline(const Device& device, const std::string& name,
+                                        const std::vector<uint32_t>& words, std::vector<Binding> bindings,
+                                        uint32_t push_constant_bytes, const SpecializationMap& constants);
 
 SetLayout create_set_layout(const Device& device, const std::vector<Binding>& bindings);
 PipelineLayout create_pipeline_layout(const Device& device, VkDescriptorSetLayout set_layout, VkShaderStageFlags stages,
                                       uint32_t push_constant_bytes);
 ShaderModule create_shader_module(const Device& device, const std::vector<uint32_t>& words);
-// The pipeline alone, from a shader's words: create_compute_pipeline and named_pipeline.hpp both make theirs so.
-PipelineHandle create_compute_handle(const Device& device, const std::string& name, const std::vector<uint32_t>& words,
-                                     const SpecializationMap& constants, VkPipelineLayout layout);
 // Triangles without vertex input (the vertex shader makes or fetches its vertex), culling, blending or depth, drawn
 // into one image of `format`; viewport and scissor are set when recording. Both stages get the constants.
 PipelineHandle create_graphics_pipeline(const Device& device, const std::string& vertex_shader,
