@@ -5,7 +5,6 @@
 
 #include "common/error.hpp"
 #include "common/image/atomic_file.hpp"
-#include "common/measure/knobs_json.hpp"
 
 namespace welkin {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Knob, name, unit, meaning, minimum, maximum, initial, choices, ladder)

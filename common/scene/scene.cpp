@@ -149,7 +149,7 @@ std::string write_scene(const Scene& scene) {
   Scene written = scene;
   fields(writer, written, written);
   sections(written, [&](const char* name, auto& member) {
-    constexpr bool many = requires { member.emplace_back(); };
+    constexpr bool many = is_many<std::decay_t<decltype(member)>>;
     each_of(member, [&](auto& section) {
       writer.text += fmt::format(many ? "\n[[{}]]\n" : "\n[{}]\n", name);
       writer.keys.clear();
