@@ -9,7 +9,7 @@
 #include "common/image/atomic_file.hpp"
 #include "common/image/exr.hpp"
 #include "common/image/png.hpp"
-#include "common/measure/knobs_json.hpp"
+#include "common/measure/bench_json.hpp"
 #include "common/scene/one_line.hpp"
 #include "common/scene/path.hpp"
 #include "common/scene/scene_knobs.hpp"

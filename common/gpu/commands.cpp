@@ -42,9 +42,7 @@ CommandPool create_command_pool(const Device& device) {
   const VkCommandPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                      .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
                                      .queueFamilyIndex = device.queue_family()};
-  VkCommandPool pool = VK_NULL_HANDLE;
-  check(vkCreateCommandPool(device, &info, nullptr, &pool), "vkCreateCommandPool");
-  return CommandPool(device, pool);
+  return create<CommandPool>(device, vkCreateCommandPool, info, "vkCreateCommandPool");
 }
 
 VkCommandBuffer allocate_commands(const Device& device, VkCommandPool pool) {
@@ -68,9 +66,7 @@ void end_commands(VkCommandBuffer commands) { check(vkEndCommandBuffer(commands)
 // [submit]
 void submit_and_wait(const Device& device, VkCommandBuffer commands) {
   const VkFenceCreateInfo fence_info{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
-  VkFence raw = VK_NULL_HANDLE;
-  check(vkCreateFence(device, &fence_info, nullptr, &raw), "vkCreateFence");
-  const Fence fence(device, raw);
+  const Fence fence = create<Fence>(device, vkCreateFence, fence_info, "vkCreateFence");
   const VkCommandBufferSubmitInfo buffer{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
                                          .commandBuffer = commands};
   const VkSubmitInfo2 submit{

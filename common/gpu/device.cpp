@@ -2,6 +2,7 @@
 #include "common/gpu/device.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <numeric>
 
@@ -44,15 +45,13 @@ std::vector<std::string> missing_features(VkPhysicalDevice device, uint32_t api_
 }
 // [/wanted]
 
-int rank(const Candidate& candidate) {
+// Lower is preferred.
+auto rank(const Candidate& candidate) {
+  constexpr std::array order{VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU, VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU,
+                             VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU};
   VkPhysicalDeviceProperties properties;
   vkGetPhysicalDeviceProperties(candidate.handle, &properties);
-  switch (properties.deviceType) {
-    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return 0;
-    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return 1;
-    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return 2;
-    default: return 3;
-  }
+  return std::find(order.begin(), order.end(), properties.deviceType) - order.begin();
 }
 
 std::string offered(const std::vector<Candidate>& candidates) {
@@ -120,10 +119,7 @@ const Candidate& choose_device(const std::vector<Candidate>& candidates, const s
 // [/choose]
 
 // [create]
-Device::Device(const Instance& instance, const Candidate& candidate, bool swapchain)
-    : candidate_(candidate),
-      allocations_(std::make_unique<std::vector<Allocation>>()),
-      allocation_count_(std::make_unique<uint64_t>(0)) {
+Device::Device(const Instance& instance, const Candidate& candidate, bool swapchain) : candidate_(candidate) {
   queue_family_ = find_queue_family(candidate.handle, &timestamp_bits_);
   const float priority = 1.0f;
   const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
@@ -159,29 +155,23 @@ Device::~Device() {
   vkDestroyDevice(device_, nullptr);
 }
 
-uint32_t Device::memory_type(uint32_t type_bits, VkMemoryPropertyFlags properties) const {
+std::optional<uint32_t> Device::memory_type(uint32_t type_bits, VkMemoryPropertyFlags properties) const {
   for (uint32_t i = 0; i < memory_.memoryTypeCount; ++i)
     if ((type_bits & (1u << i)) != 0 && (memory_.memoryTypes[i].propertyFlags & properties) == properties) return i;
-  fail("{} offers no memory type with properties {:#x}", candidate_.name, properties);
+  return std::nullopt;
 }
 
-bool Device::has_memory_type(uint32_t type_bits, VkMemoryPropertyFlags properties) const {
-  for (uint32_t i = 0; i < memory_.memoryTypeCount; ++i)
-    if ((type_bits & (1u << i)) != 0 && (memory_.memoryTypes[i].propertyFlags & properties) == properties) return true;
-  return false;
-}
-
-void Device::set_name(VkObjectType type, uint64_t handle, const std::string& name) const {
+void Device::set_name(VkObjectType type, const void* handle, const std::string& name) const {
   if (set_name_ == nullptr) return;
   const VkDebugUtilsObjectNameInfoEXT info{.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT,
                                            .objectType = type,
-                                           .objectHandle = handle,
+                                           .objectHandle = reinterpret_cast<uint64_t>(handle),
                                            .pObjectName = name.c_str()};
   set_name_(device_, &info);
 }
 
 uint64_t Device::allocated_bytes() const {
-  return std::accumulate(allocations_->begin(), allocations_->end(), uint64_t{0},
+  return std::accumulate(allocations_.begin(), allocations_.end(), uint64_t{0},
                          [](uint64_t sum, const Allocation& allocation) { return sum + allocation.bytes; });
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -47,18 +47,17 @@ class Device {
   const VkPhysicalDeviceLimits& limits() const { return limits_; }
   uint32_t timestamp_bits() const { return timestamp_bits_; }
 
-  // Index of a memory type among `type_bits` with all `properties`; throws if there is none.
-  uint32_t memory_type(uint32_t type_bits, VkMemoryPropertyFlags properties) const;
-  bool has_memory_type(uint32_t type_bits, VkMemoryPropertyFlags properties) const;
+  // Index of a memory type among `type_bits` with all `properties`, if there is one.
+  std::optional<uint32_t> memory_type(uint32_t type_bits, VkMemoryPropertyFlags properties) const;
 
   // Gives a handle the name that validation messages and debuggers show. Does nothing without validation.
-  void set_name(VkObjectType type, uint64_t handle, const std::string& name) const;
+  void set_name(VkObjectType type, const void* handle, const std::string& name) const;
 
   // Live allocations by resource name, kept by Image and Buffer.
-  std::vector<Allocation>& allocations() const { return *allocations_; }
+  std::vector<Allocation>& allocations() const { return allocations_; }
   uint64_t allocated_bytes() const;
   // How many allocations there have ever been: a frame that makes one shows here.
-  uint64_t& allocation_count() const { return *allocation_count_; }
+  uint64_t& allocation_count() const { return allocation_count_; }
 
  private:
   Candidate candidate_;
@@ -69,8 +68,8 @@ class Device {
   VkPhysicalDeviceLimits limits_{};
   VkPhysicalDeviceMemoryProperties memory_{};
   PFN_vkSetDebugUtilsObjectNameEXT set_name_ = nullptr;
-  std::unique_ptr<std::vector<Allocation>> allocations_;
-  std::unique_ptr<uint64_t> allocation_count_;
+  mutable std::vector<Allocation> allocations_;
+  mutable uint64_t allocation_count_ = 0;
 };
 
 }  // namespace welkin::gpu

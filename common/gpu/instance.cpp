@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstring>
 
 namespace welkin::gpu {
 namespace {
@@ -22,29 +21,15 @@ VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT
   return VK_FALSE;
 }
 
-bool layer_available(const char* name) {
-  uint32_t count = 0;
-  vkEnumerateInstanceLayerProperties(&count, nullptr);
-  std::vector<VkLayerProperties> layers(count);
-  vkEnumerateInstanceLayerProperties(&count, layers.data());
-  return std::any_of(layers.begin(), layers.end(),
-                     [&](const VkLayerProperties& layer) { return std::strcmp(layer.layerName, name) == 0; });
-}
-
 }  // namespace
 
 // [create]
-Instance::Instance(Validation validation, const std::vector<const char*>& window_extensions)
-    : messages_(std::make_unique<std::vector<std::string>>()) {
+Instance::Instance(Validation validation, const std::vector<const char*>& window_extensions) {
   const VkApplicationInfo application{
       .sType = VK_STRUCTURE_TYPE_APPLICATION_INFO, .pApplicationName = "welkin", .apiVersion = VK_API_VERSION_1_3};
   std::vector<const char*> extensions = window_extensions;
   std::vector<const char*> layers;
   if (validation != Validation::off) {
-    if (!layer_available(kValidationLayer))
-      fail(
-          "--validation: the Khronos validation layer is not installed; on Debian: apt-get install "
-          "vulkan-validationlayers");
     layers.push_back(kValidationLayer);
     extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
   }
@@ -55,7 +40,7 @@ Instance::Instance(Validation validation, const std::vector<const char*>& window
           VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
       .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT,
       .pfnUserCallback = on_message,
-      .pUserData = messages_.get()};
+      .pUserData = &messages_};
   const VkValidationFeatureEnableEXT sync = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
   const VkValidationFeaturesEXT features{.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
                                          .pNext = &messenger,
@@ -74,6 +59,10 @@ Instance::Instance(Validation validation, const std::vector<const char*>& window
     throw Error(Exit::skipped,
                 "no Vulkan driver on this machine: wanted Vulkan 1.3; a software driver is enough "
                 "(on Debian: apt-get install mesa-vulkan-drivers); see docs/chapters/01_first_light.md");
+  if (result == VK_ERROR_LAYER_NOT_PRESENT)
+    fail(
+        "--validation: the Khronos validation layer is not installed; on Debian: apt-get install "
+        "vulkan-validationlayers");
   check(result, "vkCreateInstance");
 
   if (!layers.empty()) {

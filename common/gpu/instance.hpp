@@ -1,7 +1,6 @@
 // The Vulkan instance: which layers watch us, and what they said.
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -24,12 +23,12 @@ class Instance {
   bool debug_names() const { return messenger_ != VK_NULL_HANDLE; }
 
   // Warnings and errors the validation layers reported so far, in order. A run that has any ends with exit code 3.
-  const std::vector<std::string>& validation_messages() const { return *messages_; }
+  const std::vector<std::string>& validation_messages() const { return messages_; }
 
  private:
   VkInstance instance_ = VK_NULL_HANDLE;
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
-  std::unique_ptr<std::vector<std::string>> messages_;
+  std::vector<std::string> messages_;
 };
 
 }  // namespace welkin::gpu

@@ -17,17 +17,9 @@ uint32_t bits_of(const Constant& constant) {
 
 const char* type_name(size_t type) { return type == 0 ? "bool" : type == 1 ? "int" : "float"; }
 
-// Map entries and data of the constants this shader has.
-struct Specialized {
-  std::vector<VkSpecializationMapEntry> entries;
-  std::vector<uint32_t> data;
-  VkSpecializationInfo info() const {
-    return {static_cast<uint32_t>(entries.size()), entries.data(), data.size() * sizeof(uint32_t), data.data()};
-  }
-};
-
-Specialized specialize(const std::string& shader, const ShaderInterface& interface, const Constants& constants) {
-  Specialized result;
+// Of the constants those this shader has.
+SpecializationMap specialize(const std::string& shader, const ShaderInterface& interface, const Constants& constants) {
+  SpecializationMap map;
   for (const Constant& constant : constants) {
     const auto found = std::find_if(interface.constants.begin(), interface.constants.end(),
                                     [&](const ShaderConstant& c) { return c.name == constant.name; });
@@ -41,21 +33,9 @@ Specialized specialize(const std::string& shader, const ShaderInterface& interfa
     if (constant.value.index() != static_cast<size_t>(found->type))
       fail("shader {}: constant '{}' is of type {}, and a {} was given", shader, constant.name,
            type_name(static_cast<size_t>(found->type)), type_name(constant.value.index()));
-    result.entries.push_back({found->id, static_cast<uint32_t>(4 * result.data.size()), 4});
-    result.data.push_back(bits_of(constant));
+    map.add(found->id, bits_of(constant));
   }
-  return result;
-}
-
-void make_layouts(const Device& device, NamedPipeline& pipeline) {
-  std::vector<Binding> bindings;
-  for (ShaderBinding& binding : pipeline.bindings) {
-    if (binding.name == kViewBlock) binding.type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC;
-    bindings.push_back({binding.slot, binding.type, binding.stages});
-  }
-  pipeline.set_layout = create_set_layout(device, bindings);
-  pipeline.layout =
-      create_pipeline_layout(device, pipeline.set_layout, VK_SHADER_STAGE_COMPUTE_BIT, pipeline.push_constant_bytes);
+  return map;
 }
 
 }  // namespace
@@ -86,13 +66,19 @@ std::shared_ptr<const NamedPipeline> Pipelines::get(const std::string& shader, c
   const auto found = made_.find(key);
   if (found != made_.end()) return found->second;
 
-  const Stage& first = stage(shader);
-  NamedPipeline pipeline{.shader = shader,
-                         .bindings = first.interface.bindings,
-                         .push_constant_bytes = first.interface.push_constant_bytes};
-  make_layouts(device_, pipeline);
-  const Specialized special = specialize(shader, first.interface, constants);
-  pipeline.handle = create_compute_handle(device_, shader, first.words, special.info(), pipeline.layout);
+  const auto& [words, interface] = stage(shader);
+  NamedPipeline pipeline{
+      .shader = shader, .bindings = interface.bindings, .push_constant_bytes = interface.push_constant_bytes};
+  std::vector<Binding> slots;
+  for (ShaderBinding& binding : pipeline.bindings) {
+    if (binding.name == kViewBlock) binding.type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC;
+    slots.push_back({binding.slot, binding.type, binding.stages});
+  }
+  ComputePipeline made = create_compute_pipeline(device_, shader, words, slots, pipeline.push_constant_bytes,
+                                                 specialize(shader, interface, constants));
+  pipeline.set_layout = std::move(made.set_layout);
+  pipeline.layout = std::move(made.layout);
+  pipeline.handle = std::move(made.handle);
   return made_.emplace(key, std::make_shared<const NamedPipeline>(std::move(pipeline))).first->second;
 }
 

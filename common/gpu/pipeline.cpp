@@ -8,19 +8,23 @@
 namespace welkin::gpu {
 namespace {
 
-// Value i of a Specialization stands 4 i bytes into its data.
-std::vector<VkSpecializationMapEntry> entries_of(const Specialization& specialization) {
-  std::vector<VkSpecializationMapEntry> entries;
-  for (uint32_t i = 0; i < specialization.size(); ++i) entries.push_back({.constantID = i, .offset = 4 * i, .size = 4});
-  return entries;
+// Value i of a Specialization goes to constant i.
+SpecializationMap numbered(const Specialization& values) {
+  SpecializationMap map;
+  for (uint32_t i = 0; i < values.size(); ++i) map.add(i, values[i]);
+  return map;
 }
 
-VkSpecializationInfo info_of(const std::vector<VkSpecializationMapEntry>& entries,
-                             const Specialization& specialization) {
-  return {.mapEntryCount = static_cast<uint32_t>(entries.size()),
-          .pMapEntries = entries.data(),
-          .dataSize = specialization.size() * sizeof(uint32_t),
-          .pData = specialization.data()};
+void write(const Device& device, const DescriptorSet& set, uint32_t slot, VkDescriptorType type,
+           const VkDescriptorImageInfo* image, const VkDescriptorBufferInfo* buffer) {
+  const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                   .dstSet = set.handle,
+                                   .dstBinding = slot,
+                                   .descriptorCount = 1,
+                                   .descriptorType = type,
+                                   .pImageInfo = image,
+                                   .pBufferInfo = buffer};
+  vkUpdateDescriptorSets(device, 1, &write, 0, nullptr);
 }
 
 }  // namespace
@@ -33,9 +37,7 @@ SetLayout create_set_layout(const Device& device, const std::vector<Binding>& bi
   const VkDescriptorSetLayoutCreateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
                                              .bindingCount = static_cast<uint32_t>(entries.size()),
                                              .pBindings = entries.data()};
-  VkDescriptorSetLayout layout = VK_NULL_HANDLE;
-  check(vkCreateDescriptorSetLayout(device, &info, nullptr, &layout), "vkCreateDescriptorSetLayout");
-  return SetLayout(device, layout);
+  return create<SetLayout>(device, vkCreateDescriptorSetLayout, info, "vkCreateDescriptorSetLayout");
 }
 
 PipelineLayout create_pipeline_layout(const Device& device, VkDescriptorSetLayout set_layout, VkShaderStageFlags stages,
@@ -46,66 +48,62 @@ PipelineLayout create_pipeline_layout(const Device& device, VkDescriptorSetLayou
                                         .pSetLayouts = &set_layout,
                                         .pushConstantRangeCount = push_constant_bytes > 0 ? 1u : 0u,
                                         .pPushConstantRanges = &range};
-  VkPipelineLayout layout = VK_NULL_HANDLE;
-  check(vkCreatePipelineLayout(device, &info, nullptr, &layout), "vkCreatePipelineLayout");
-  return PipelineLayout(device, layout);
+  return create<PipelineLayout>(device, vkCreatePipelineLayout, info, "vkCreatePipelineLayout");
 }
 
 ShaderModule create_shader_module(const Device& device, const std::vector<uint32_t>& words) {
   const VkShaderModuleCreateInfo info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
                                       .codeSize = words.size() * sizeof(uint32_t),
                                       .pCode = words.data()};
-  VkShaderModule module = VK_NULL_HANDLE;
-  check(vkCreateShaderModule(device, &info, nullptr, &module), "vkCreateShaderModule");
-  return ShaderModule(device, module);
+  return create<ShaderModule>(device, vkCreateShaderModule, info, "vkCreateShaderModule");
 }
 
 // [compute]
-PipelineHandle create_compute_handle(const Device& device, const std::string& name, const std::vector<uint32_t>& words,
-                                     const VkSpecializationInfo& constants, VkPipelineLayout layout) {
-  const ShaderModule module = create_shader_module(device, words);  // needed only while the pipeline is made
-  const VkComputePipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-                                         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                                                   .stage = VK_SHADER_STAGE_COMPUTE_BIT,
-                                                   .module = module,
-                                                   .pName = "main",
-                                                   .pSpecializationInfo = &constants},
-                                         .layout = layout};
-  VkPipeline handle = VK_NULL_HANDLE;
-  check(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &handle), "vkCreateComputePipelines");
-  device.set_name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<uint64_t>(handle), name);
-  return PipelineHandle(device, handle);
+static VkPipelineShaderStageCreateInfo stage_of(VkShaderStageFlagBits which, VkShaderModule module,
+                                                const VkSpecializationInfo& constants) {
+  return {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+          .stage = which,
+          .module = module,
+          .pName = "main",
+          .pSpecializationInfo = &constants};
 }
 
-ComputePipeline create_compute_pipeline(const Device& device, const std::string& shader, std::vector<Binding> bindings,
-                                        uint32_t push_constant_bytes, const Specialization& specialization) {
+ComputePipeline create_compute_pipeline(const Device& device, const std::string& name,
+                                        const std::vector<uint32_t>& words, std::vector<Binding> bindings,
+                                        uint32_t push_constant_bytes, const SpecializationMap& constants) {
   ComputePipeline pipeline;
   pipeline.set_layout = create_set_layout(device, bindings);
   pipeline.layout =
       create_pipeline_layout(device, pipeline.set_layout, VK_SHADER_STAGE_COMPUTE_BIT, push_constant_bytes);
   pipeline.bindings = std::move(bindings);
-  const std::vector<VkSpecializationMapEntry> entries = entries_of(specialization);
-  pipeline.handle =
-      create_compute_handle(device, shader, load_spirv(shader), info_of(entries, specialization), pipeline.layout);
+  const ShaderModule module = create_shader_module(device, words);  // needed only while the pipeline is made
+  const VkSpecializationInfo special = constants.info();
+  const VkComputePipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+                                         .stage = stage_of(VK_SHADER_STAGE_COMPUTE_BIT, module, special),
+                                         .layout = pipeline.layout};
+  VkPipeline handle = VK_NULL_HANDLE;
+  check(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &handle), "vkCreateComputePipelines");
+  pipeline.handle = PipelineHandle(device, handle);
+  device.set_name(VK_OBJECT_TYPE_PIPELINE, handle, name);
   return pipeline;
+}
+
+ComputePipeline create_compute_pipeline(const Device& device, const std::string& shader, std::vector<Binding> bindings,
+                                        uint32_t push_constant_bytes, const Specialization& specialization) {
+  return create_compute_pipeline(device, shader, load_spirv(shader), std::move(bindings), push_constant_bytes,
+                                 numbered(specialization));
 }
 // [/compute]
 
 PipelineHandle create_graphics_pipeline(const Device& device, const std::string& vertex_shader,
                                         const std::string& fragment_shader, VkPipelineLayout layout, VkFormat format,
                                         const Specialization& specialization) {
-  const std::vector<VkSpecializationMapEntry> entries = entries_of(specialization);
-  const VkSpecializationInfo special = info_of(entries, specialization);
+  const SpecializationMap constants = numbered(specialization);
+  const VkSpecializationInfo special = constants.info();
   const ShaderModule vertex = create_shader_module(device, load_spirv(vertex_shader));
   const ShaderModule fragment = create_shader_module(device, load_spirv(fragment_shader));
-  const auto stage = [&](VkShaderStageFlagBits which, VkShaderModule module) {
-    return VkPipelineShaderStageCreateInfo{.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                                           .stage = which,
-                                           .module = module,
-                                           .pName = "main",
-                                           .pSpecializationInfo = &special};
-  };
-  const std::array stages{stage(VK_SHADER_STAGE_VERTEX_BIT, vertex), stage(VK_SHADER_STAGE_FRAGMENT_BIT, fragment)};
+  const std::array stages{stage_of(VK_SHADER_STAGE_VERTEX_BIT, vertex, special),
+                          stage_of(VK_SHADER_STAGE_FRAGMENT_BIT, fragment, special)};
   const VkPipelineVertexInputStateCreateInfo input{.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
   const VkPipelineInputAssemblyStateCreateInfo assembly{
       .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
@@ -155,12 +153,10 @@ DescriptorSet create_descriptor_set(const Device& device, VkDescriptorSetLayout 
                                              .maxSets = 1,
                                              .poolSizeCount = static_cast<uint32_t>(sizes.size()),
                                              .pPoolSizes = sizes.data()};
-  DescriptorSet set;
-  VkDescriptorPool pool = VK_NULL_HANDLE;
-  check(vkCreateDescriptorPool(device, &pool_info, nullptr, &pool), "vkCreateDescriptorPool");
-  set.pool = DescriptorPool(device, pool);
+  DescriptorSet set{.pool =
+                        create<DescriptorPool>(device, vkCreateDescriptorPool, pool_info, "vkCreateDescriptorPool")};
   const VkDescriptorSetAllocateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
-                                         .descriptorPool = pool,
+                                         .descriptorPool = set.pool,
                                          .descriptorSetCount = 1,
                                          .pSetLayouts = &layout};
   check(vkAllocateDescriptorSets(device, &info, &set.handle), "vkAllocateDescriptorSets");
@@ -170,34 +166,17 @@ DescriptorSet create_descriptor_set(const Device& device, VkDescriptorSetLayout 
 void write_image_view(const Device& device, const DescriptorSet& set, uint32_t slot, VkDescriptorType type,
                       VkImageView view, VkSampler sampler) {
   const VkDescriptorImageInfo info{.sampler = sampler, .imageView = view, .imageLayout = VK_IMAGE_LAYOUT_GENERAL};
-  const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                   .dstSet = set.handle,
-                                   .dstBinding = slot,
-                                   .descriptorCount = 1,
-                                   .descriptorType = type,
-                                   .pImageInfo = &info};
-  vkUpdateDescriptorSets(device, 1, &write, 0, nullptr);
+  write(device, set, slot, type, &info, nullptr);
 }
 
 void write_storage_image(const Device& device, const DescriptorSet& set, uint32_t slot, const Image& image) {
   write_image_view(device, set, slot, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, image.view, VK_NULL_HANDLE);
 }
 
-void write_sampled_image(const Device& device, const DescriptorSet& set, uint32_t slot, const Image& image,
-                         VkSampler sampler) {
-  write_image_view(device, set, slot, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, image.view, sampler);
-}
-
 void write_buffer(const Device& device, const DescriptorSet& set, uint32_t slot, VkDescriptorType type,
                   const Buffer& buffer, VkDeviceSize range) {
   const VkDescriptorBufferInfo info{.buffer = buffer.handle, .offset = 0, .range = range};
-  const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                   .dstSet = set.handle,
-                                   .dstBinding = slot,
-                                   .descriptorCount = 1,
-                                   .descriptorType = type,
-                                   .pBufferInfo = &info};
-  vkUpdateDescriptorSets(device, 1, &write, 0, nullptr);
+  write(device, set, slot, type, nullptr, &info);
 }
 
 }  // namespace welkin::gpu

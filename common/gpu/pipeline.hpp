@@ -18,6 +18,20 @@ struct Binding {
 // Specialization constants: value i goes to constant_id i (a bool is 0 or 1, a float its bits).
 using Specialization = std::vector<uint32_t>;
 
+// The same as Vulkan takes them: which 4 bytes are the value of which constant_id.
+struct SpecializationMap {
+  std::vector<VkSpecializationMapEntry> entries;
+  std::vector<uint32_t> values;
+
+  void add(uint32_t id, uint32_t value) {
+    entries.push_back({.constantID = id, .offset = static_cast<uint32_t>(4 * values.size()), .size = 4});
+    values.push_back(value);
+  }
+  VkSpecializationInfo info() const {
+    return {static_cast<uint32_t>(entries.size()), entries.data(), 4 * values.size(), values.data()};
+  }
+};
+
 struct ComputePipeline {
   SetLayout set_layout;
   PipelineLayout layout;
@@ -28,14 +42,15 @@ struct ComputePipeline {
 // `shader` as in load_spirv. push_constant_bytes <= 128, the portable limit.
 ComputePipeline create_compute_pipeline(const Device& device, const std::string& shader, std::vector<Binding> bindings,
                                         uint32_t push_constant_bytes, const Specialization& specialization = {});
+// From a shader's words; its name is for debuggers.
+ComputePipeline create_compute_pipeline(const Device& device, const std::string& name,
+                                        const std::vector<uint32_t>& words, std::vector<Binding> bindings,
+                                        uint32_t push_constant_bytes, const SpecializationMap& constants);
 
 SetLayout create_set_layout(const Device& device, const std::vector<Binding>& bindings);
 PipelineLayout create_pipeline_layout(const Device& device, VkDescriptorSetLayout set_layout, VkShaderStageFlags stages,
                                       uint32_t push_constant_bytes);
 ShaderModule create_shader_module(const Device& device, const std::vector<uint32_t>& words);
-// The pipeline alone, from a shader's words: create_compute_pipeline and named_pipeline.hpp both make theirs so.
-PipelineHandle create_compute_handle(const Device& device, const std::string& name, const std::vector<uint32_t>& words,
-                                     const VkSpecializationInfo& constants, VkPipelineLayout layout);
 // Triangles without vertex input (the vertex shader makes or fetches its vertex), culling, blending or depth, drawn
 // into one image of `format`; viewport and scissor are set when recording. Both stages get the constants.
 PipelineHandle create_graphics_pipeline(const Device& device, const std::string& vertex_shader,
@@ -50,9 +65,7 @@ struct DescriptorSet {
 DescriptorSet create_descriptor_set(const Device& device, VkDescriptorSetLayout layout,
                                     const std::vector<Binding>& bindings);
 void write_storage_image(const Device& device, const DescriptorSet& set, uint32_t slot, const Image& image);
-// For VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER; the image is read in layout GENERAL.
-void write_sampled_image(const Device& device, const DescriptorSet& set, uint32_t slot, const Image& image,
-                         VkSampler sampler);
+// The image is read in layout GENERAL; a sampler is for VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER.
 void write_image_view(const Device& device, const DescriptorSet& set, uint32_t slot, VkDescriptorType type,
                       VkImageView view, VkSampler sampler);
 void write_buffer(const Device& device, const DescriptorSet& set, uint32_t slot, VkDescriptorType type,

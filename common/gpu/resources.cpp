@@ -8,9 +8,10 @@ namespace {
 
 Memory allocate(const Device& device, const VkMemoryRequirements& needs, VkMemoryPropertyFlags properties,
                 const std::string& name) {
-  const VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-                                  .allocationSize = needs.size,
-                                  .memoryTypeIndex = device.memory_type(needs.memoryTypeBits, properties)};
+  const std::optional<uint32_t> type = device.memory_type(needs.memoryTypeBits, properties);
+  if (!type) fail("{} offers no memory type with properties {:#x}", device.candidate().name, properties);
+  const VkMemoryAllocateInfo info{
+      .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, .allocationSize = needs.size, .memoryTypeIndex = *type};
   VkDeviceMemory memory = VK_NULL_HANDLE;
   const VkResult result = vkAllocateMemory(device, &info, nullptr, &memory);
   if (result != VK_SUCCESS)
@@ -38,9 +39,7 @@ static ImageView create_view(const Device& device, const Image& image, VkImageVi
                                    .viewType = type,
                                    .format = image.format,
                                    .subresourceRange = {aspect_of(image.format), first_mip, mips, 0, image.layers}};
-  VkImageView view = VK_NULL_HANDLE;
-  check(vkCreateImageView(device, &info, nullptr, &view), "vkCreateImageView");
-  return ImageView(device, view);
+  return create<ImageView>(device, vkCreateImageView, info, "vkCreateImageView");
 }
 
 Image create_image(const Device& device, const std::string& name, VkExtent2D size, VkFormat format,
@@ -61,14 +60,12 @@ Image create_image(const Device& device, const std::string& name, VkExtent2D siz
                                .tiling = VK_IMAGE_TILING_OPTIMAL,
                                .usage = usage,
                                .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED};
-  VkImage handle = VK_NULL_HANDLE;
-  check(vkCreateImage(device, &info, nullptr, &handle), "vkCreateImage");
-  image.handle = ImageHandle(device, handle);
+  image.handle = create<ImageHandle>(device, vkCreateImage, info, "vkCreateImage");
 
   VkMemoryRequirements needs;
-  vkGetImageMemoryRequirements(device, handle, &needs);
+  vkGetImageMemoryRequirements(device, image.handle, &needs);
   image.memory = allocate(device, needs, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, name);
-  check(vkBindImageMemory(device, handle, image.memory, 0), "vkBindImageMemory");
+  check(vkBindImageMemory(device, image.handle, image.memory, 0), "vkBindImageMemory");
 
   const VkImageViewType type = depth > 0    ? VK_IMAGE_VIEW_TYPE_3D
                                : layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY
@@ -77,7 +74,7 @@ Image create_image(const Device& device, const std::string& name, VkExtent2D siz
   for (uint32_t mip = 0; mips > 1 && mip < mips; ++mip)
     image.mip_views.push_back(create_view(device, image, type, mip, 1));
   image.account = AccountEntry(device, name, needs.size);
-  device.set_name(VK_OBJECT_TYPE_IMAGE, reinterpret_cast<uint64_t>(handle), name);
+  device.set_name(VK_OBJECT_TYPE_IMAGE, image.handle, name);
   return image;
 }
 // [/image]
@@ -98,9 +95,7 @@ Sampler create_sampler(const Device& device, Border u, Border v, VkFilter filter
                                  .addressModeV = mode(v),
                                  .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                  .maxLod = VK_LOD_CLAMP_NONE};
-  VkSampler sampler = VK_NULL_HANDLE;
-  check(vkCreateSampler(device, &info, nullptr, &sampler), "vkCreateSampler");
-  return {device, sampler};
+  return create<Sampler>(device, vkCreateSampler, info, "vkCreateSampler");
 }
 
 Buffer create_buffer(const Device& device, const std::string& name, VkDeviceSize bytes, VkBufferUsageFlags usage,
@@ -110,12 +105,10 @@ Buffer create_buffer(const Device& device, const std::string& name, VkDeviceSize
                                 .size = std::max<VkDeviceSize>(bytes, 4),
                                 .usage = usage,
                                 .sharingMode = VK_SHARING_MODE_EXCLUSIVE};
-  VkBuffer handle = VK_NULL_HANDLE;
-  check(vkCreateBuffer(device, &info, nullptr, &handle), "vkCreateBuffer");
-  buffer.handle = BufferHandle(device, handle);
+  buffer.handle = create<BufferHandle>(device, vkCreateBuffer, info, "vkCreateBuffer");
 
   VkMemoryRequirements needs;
-  vkGetBufferMemoryRequirements(device, handle, &needs);
+  vkGetBufferMemoryRequirements(device, buffer.handle, &needs);
   VkMemoryPropertyFlags properties = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
   if (where != Where::device) properties = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
   // Reading write-combined memory is very slow: cached memory where the device has it. What is written every frame lies
@@ -123,13 +116,13 @@ Buffer create_buffer(const Device& device, const std::string& name, VkDeviceSize
   VkMemoryPropertyFlags better = 0;
   if (where == Where::readback) better = VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
   if (where == Where::stream) better = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
-  if (better != 0 && device.has_memory_type(needs.memoryTypeBits, properties | better)) properties |= better;
+  if (better != 0 && device.memory_type(needs.memoryTypeBits, properties | better)) properties |= better;
   buffer.memory = allocate(device, needs, properties, name);
-  check(vkBindBufferMemory(device, handle, buffer.memory, 0), "vkBindBufferMemory");
+  check(vkBindBufferMemory(device, buffer.handle, buffer.memory, 0), "vkBindBufferMemory");
   if (where != Where::device)
     check(vkMapMemory(device, buffer.memory, 0, VK_WHOLE_SIZE, 0, &buffer.mapped), "vkMapMemory");
   buffer.account = AccountEntry(device, name, needs.size);
-  device.set_name(VK_OBJECT_TYPE_BUFFER, reinterpret_cast<uint64_t>(handle), name);
+  device.set_name(VK_OBJECT_TYPE_BUFFER, buffer.handle, name);
   return buffer;
 }
 

@@ -65,13 +65,9 @@ struct Buffer {
   }
 };
 
-enum class Where {
-  device,
-  upload,
-  readback,
-  stream
-};  // device memory; host-written; host-read (cached where there is
-    // such); host-written every frame (device-local where there is)
+// Device memory; host-written; host-read (cached where there is such); host-written every frame (device-local where
+// there is).
+enum class Where { device, upload, readback, stream };
 
 Buffer create_buffer(const Device& device, const std::string& name, VkDeviceSize bytes, VkBufferUsageFlags usage,
                      Where where);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 
@@ -33,8 +34,7 @@ std::vector<uint32_t> load_spirv(const std::string& name) {
   if (!file) fail("shader {}: cannot be read; build the chapter first (./welkin run builds it)", path.string());
   const std::vector<char> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   std::vector<uint32_t> words(bytes.size() / 4);
-  std::copy(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(words.size() * 4),
-            reinterpret_cast<char*>(words.data()));
+  std::memcpy(words.data(), bytes.data(), 4 * words.size());
   if (words.size() < 5 || words[0] != 0x07230203u || bytes.size() % 4 != 0)
     fail("shader {}: not SPIR-V; delete it and build again", path.string());
   return words;

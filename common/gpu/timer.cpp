@@ -13,9 +13,7 @@ Timer::Timer(const Device& device) : device_(&device) { add_pool(); }
 void Timer::add_pool() {
   const VkQueryPoolCreateInfo info{
       .sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO, .queryType = VK_QUERY_TYPE_TIMESTAMP, .queryCount = kQueries};
-  VkQueryPool pool = VK_NULL_HANDLE;
-  check(vkCreateQueryPool(*device_, &info, nullptr, &pool), "vkCreateQueryPool");
-  pools_.emplace_back(*device_, pool);
+  pools_.push_back(create<QueryPool>(*device_, vkCreateQueryPool, info, "vkCreateQueryPool"));
   names_.resize(pools_.size() * kPassesOfPool);
   times_.reserve(names_.size());
 }

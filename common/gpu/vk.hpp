@@ -18,6 +18,7 @@ void check(VkResult result, const char* call);
 template <typename T, auto Destroy>
 class Handle {
  public:
+  using Raw = T;
   Handle() = default;
   Handle(VkDevice device, T handle) : device_(device), handle_(handle) {}
   Handle(Handle&& other) noexcept { swap(other); }
@@ -57,5 +58,14 @@ using Fence = Handle<VkFence, vkDestroyFence>;
 using RenderPass = Handle<VkRenderPass, vkDestroyRenderPass>;
 using Framebuffer = Handle<VkFramebuffer, vkDestroyFramebuffer>;
 using Swapchain = Handle<VkSwapchainKHR, vkDestroySwapchainKHR>;
+
+// What every vkCreate… function of a device does: it makes a handle from a description. `call` is its name, for
+// check().
+template <typename Owner, typename Create, typename Info>
+Owner create(VkDevice device, Create* function, const Info& info, const char* call) {
+  typename Owner::Raw handle = VK_NULL_HANDLE;
+  check(function(device, &info, nullptr, &handle), call);
+  return Owner(device, handle);
+}
 
 }  // namespace welkin::gpu

@@ -15,20 +15,14 @@ constexpr size_t kMaxFile = size_t{256} << 20;
 constexpr size_t kMaxRows = 1'000'000;
 constexpr size_t kMaxColumns = 256;
 
-struct Field {
-  std::string_view text;
-  size_t column;  // of its first character, from 1
-};
-
-std::vector<Field> split(std::string_view line) {
-  std::vector<Field> fields;
+// The fields, without the blanks around them; each still lies in the line, which tells its column.
+std::vector<std::string_view> split(std::string_view line) {
+  std::vector<std::string_view> fields;
   for (size_t start = 0; start <= line.size();) {
-    const size_t comma = std::min(line.find(',', start), line.size());
-    size_t first = start, last = comma;
-    while (first < last && (line[first] == ' ' || line[first] == '\t')) ++first;
-    while (last > first && (line[last - 1] == ' ' || line[last - 1] == '\t')) --last;
-    fields.push_back({line.substr(first, last - first), (first < last ? first : start) + 1});
-    start = comma + 1;
+    const std::string_view field = line.substr(start, std::min(line.find(',', start), line.size()) - start);
+    const size_t first = field.find_first_not_of(" \t"), last = field.find_last_not_of(" \t");
+    fields.push_back(first == field.npos ? field.substr(0, 0) : field.substr(first, last - first + 1));
+    start += field.size() + 1;
   }
   return fields;
 }
@@ -58,7 +52,6 @@ CsvTable parse_csv(std::string_view contents, const std::string& file, const std
     return std::find(list.begin(), list.end(), name) != list.end();
   };
   size_t number = 0;
-  const auto refuse = [&](size_t column, const std::string& why) { fail("{}:{}:{}: {}", file, number, column, why); };
   if (contents.starts_with("\xEF\xBB\xBF")) contents.remove_prefix(3);  // the mark that spreadsheets put before UTF-8
   if (contents.starts_with("\xFF\xFE") || contents.starts_with("\xFE\xFF"))
     fail("{}: UTF-16 text; accepted is UTF-8", file);
@@ -68,33 +61,35 @@ CsvTable parse_csv(std::string_view contents, const std::string& file, const std
     contents.remove_prefix(line.size());
     contents.remove_prefix(contents.starts_with("\r\n") ? 2 : std::min<size_t>(1, contents.size()));
     if (line.find_first_not_of(" \t") == line.npos || line.front() == '#') continue;
-    if (const size_t quote = line.find('"'); quote != line.npos) refuse(quote + 1, "quotes are not accepted");
-    const std::vector<Field> fields = split(line);
+    const auto refuse = [&](std::string_view at, const std::string& why) {
+      fail("{}:{}:{}: {}", file, number, at.data() - line.data() + 1, why);
+    };
+    if (const size_t quote = line.find('"'); quote != line.npos) refuse(line.substr(quote), "quotes are not accepted");
+    const std::vector<std::string_view> fields = split(line);
     if (table.names.empty()) {
       if (fields.size() > kMaxColumns)
-        refuse(1, fmt::format("{} columns; accepted are up to {}", fields.size(), kMaxColumns));
-      for (const Field& field : fields) {
-        if (field.text.empty()) refuse(field.column, "a column without a name");
-        if (has(table.names, field.text))
-          refuse(field.column, fmt::format("column '{}' occurs twice", shown(field.text)));
-        table.names.emplace_back(field.text);
+        refuse(line, fmt::format("{} columns; accepted are up to {}", fields.size(), kMaxColumns));
+      for (const std::string_view field : fields) {
+        if (field.empty()) refuse(field, "a column without a name");
+        if (has(table.names, field)) refuse(field, fmt::format("column '{}' occurs twice", shown(field)));
+        table.names.emplace_back(field);
       }
       const std::string all = shown(fmt::format("{}", fmt::join(table.names, ", ")));
       for (const std::string& name : required)
-        if (!has(table.names, name)) refuse(1, fmt::format("column '{}' is missing: there are {}", name, all));
+        if (!has(table.names, name)) refuse(line, fmt::format("column '{}' is missing: there are {}", name, all));
       table.numbers.resize(fields.size());
       table.fields.resize(fields.size());
       continue;
     }
     if (fields.size() != table.names.size())
-      refuse(fields.back().column, fmt::format("{} fields where the header has {}", fields.size(), table.names.size()));
-    if (++table.rows > kMaxRows) refuse(1, fmt::format("more than the {} rows accepted", kMaxRows));
+      refuse(fields.back(), fmt::format("{} fields where the header has {}", fields.size(), table.names.size()));
+    if (++table.rows > kMaxRows) refuse(line, fmt::format("more than the {} rows accepted", kMaxRows));
     for (size_t i = 0; i < fields.size(); ++i) {
-      table.fields[i].emplace_back(fields[i].text);
+      table.fields[i].emplace_back(fields[i]);
       double value = 0.0;
       if (has(text, table.names[i])) continue;
-      if (!parse_number(fields[i].text, value))
-        refuse(fields[i].column, fmt::format("{} '{}' is not a finite number", table.names[i], shown(fields[i].text)));
+      if (!parse_number(fields[i], value))
+        refuse(fields[i], fmt::format("{} '{}' is not a finite number", table.names[i], shown(fields[i])));
       table.numbers[i].push_back(value);
     }
   }

@@ -5,7 +5,10 @@
 
 #include "common/error.hpp"
 #include "common/image/atomic_file.hpp"
-#include "common/measure/knobs_json.hpp"
+
+namespace welkin {
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Knob, name, unit, meaning, minimum, maximum, initial, choices, ladder)
+}
 
 namespace welkin::measure {
 
@@ -69,17 +72,7 @@ std::string bench_table(const BenchResult& r) {
 }
 
 void write_knobs_json(const std::filesystem::path& file, const std::string& chapter, const std::vector<Knob>& knobs) {
-  Json json = {{"chapter", chapter}, {"knobs", Json::array()}};
-  for (const Knob& knob : knobs)
-    json["knobs"].push_back({{"name", knob.name},
-                             {"unit", knob.unit},
-                             {"meaning", knob.meaning},
-                             {"minimum", knob.minimum},
-                             {"maximum", knob.maximum},
-                             {"initial", knob.initial},
-                             {"choices", knob.choices},
-                             {"ladder", knob.ladder}});
-  write_file_atomically(file, json.dump(2) + "\n");
+  write_file_atomically(file, Json{{"chapter", chapter}, {"knobs", knobs}}.dump(2) + "\n");
 }
 
 }  // namespace welkin::measure

@@ -1,4 +1,5 @@
-// One benchmark as data: what ran where, how long each pass took, how many bytes it holds.
+// What is handed on as JSON: a benchmark (what ran where, how long each pass took, how many bytes it holds), and the
+// knobs of a chapter.
 #pragma once
 
 #include <filesystem>
@@ -6,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/knobs.hpp"
 #include "common/measure/statistics.hpp"
 
 namespace welkin::measure {
@@ -36,5 +38,9 @@ BenchResult read_bench(const std::filesystem::path& file);  // Error naming the 
 std::string bench_table(const BenchResult& result);
 
 std::string human_bytes(uint64_t bytes);  // "12.3 MiB"
+
+// {"chapter": …, "knobs": [the members of Knob]}, from which the book's tables are woven; values of a choice are
+// indices into its names.
+void write_knobs_json(const std::filesystem::path& file, const std::string& chapter, const std::vector<Knob>& knobs);
 
 }  // namespace welkin::measure

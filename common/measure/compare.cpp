@@ -158,11 +158,10 @@ void write_comparison(const std::filesystem::path& prefix, const std::string& ti
   const std::string markdown =
       fmt::format("# {}\n\n![{}]({}.png)\n\n{}", heading, heading, prefix.filename().string(), text);
   const std::string html = fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}</title>\n<style>body{{font:16px "
-      "sans-serif;"
-      "color:#111;background:#fff;max-width:80em;margin:1em auto}}img{{width:100%}}table{{border-collapse:collapse}}"
-      "td{{border:1px solid #999;padding:.2em "
-      ".6em}}tr:first-child{{font-weight:bold}}</style></head>\n<body><h1>{0}</h1>\n"
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}</title>\n"
+      "<style>body{{font:16px sans-serif;color:#111;background:#fff;max-width:80em;margin:1em auto}}img{{width:100%}}"
+      "table{{border-collapse:collapse}}td{{border:1px solid #999;padding:.2em .6em}}"
+      "tr:first-child{{font-weight:bold}}</style></head>\n<body><h1>{0}</h1>\n"
       "<img alt=\"{0}\" src=\"data:image/png;base64,{1}\">\n{2}</body></html>\n",
       heading, base64(png), text);
   for (const auto& [ending, contents] : {std::pair{".png", png}, {".md", markdown}, {".html", html}})

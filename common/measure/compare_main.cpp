@@ -38,14 +38,9 @@ int main(int argc, char** argv) {
     return static_cast<int>(Exit::ok);
   } catch (const CLI::CallForHelp& help) {
     return app.exit(help);
-  } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "welkin_compare: {}\n", error.what());
-    return static_cast<int>(Exit::usage);
-  } catch (const Error& error) {
-    fmt::print(stderr, "welkin_compare: {}\n", error.what());
-    return static_cast<int>(error.exit_code);
   } catch (const std::exception& error) {
     fmt::print(stderr, "welkin_compare: {}\n", error.what());
-    return static_cast<int>(Exit::usage);
+    const auto* ours = dynamic_cast<const Error*>(&error);
+    return static_cast<int>(ours != nullptr ? ours->exit_code : Exit::usage);
   }
 }

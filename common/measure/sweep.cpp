@@ -16,19 +16,14 @@ std::vector<std::vector<double>> ladder_settings(const Settings& settings) {
     rungs.push_back(climbs ? knob.ladder : std::vector<double>{settings.number(knob.name)});
     product = std::min(product * rungs.back().size(), kMostCombinations + 1);
   }
-  std::vector<std::vector<double>> all(1);
   if (product <= kMostCombinations) {
-    for (const std::vector<double>& ladder : rungs) {
-      std::vector<std::vector<double>> longer;
-      for (const auto& head : all)
-        for (const double rung : ladder) {
-          longer.push_back(head);
-          longer.back().push_back(rung);
-        }
-      all = std::move(longer);
-    }
+    std::vector<std::vector<double>> all(product, std::vector<double>(rungs.size()));
+    for (size_t i = 0; i < product; ++i)
+      for (size_t knob = rungs.size(), rest = i; knob-- > 0; rest /= rungs[knob].size())
+        all[i][knob] = rungs[knob][rest % rungs[knob].size()];
     return all;
   }
+  std::vector<std::vector<double>> all(1);
   for (const Knob& knob : settings.knobs()) all.front().push_back(settings.number(knob.name));
   for (size_t knob = 0; knob < rungs.size(); ++knob)
     for (const double rung : rungs[knob]) {

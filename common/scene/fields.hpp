@@ -68,10 +68,16 @@ void choose(const Range& range, int chosen, T& value) {
     value = static_cast<T>(chosen + range.first);
 }
 
-// Calls each(section) for a section, for one that may be absent, for many.
+// A member of the scene is a section, one that may be absent, or many.
+template <typename T>
+constexpr bool is_many = requires(T member) {
+  member.emplace_back();
+};
+
+// Calls each(section) for all there are.
 template <typename T, typename Each>
 void each_of(T& member, const Each& each) {
-  if constexpr (requires { member.emplace_back(); }) {
+  if constexpr (is_many<T>) {
     std::for_each(member.begin(), member.end(), each);
   } else if constexpr (requires { member.emplace(); }) {
     if (member) each(*member);

@@ -149,7 +149,7 @@ std::string write_scene(const Scene& scene) {
   Scene written = scene;
   fields(writer, written, written);
   sections(written, [&](const char* name, auto& member) {
-    constexpr bool many = requires { member.emplace_back(); };
+    constexpr bool many = is_many<std::decay_t<decltype(member)>>;
     each_of(member, [&](auto& section) {
       writer.text += fmt::format(many ? "\n[[{}]]\n" : "\n[{}]\n", name);
       writer.keys.clear();
@@ -165,19 +165,15 @@ std::vector<Constituent> constituents(const Scene& scene) {
   std::vector<Constituent> list;
   for (const char* kind : {"rayleigh", "mie", "ozone"}) {
     const Medium* medium = scene.medium(kind);
-    if (!medium)
-      list.push_back({kind, false, fmt::format("no medium '{}' in scene", kind)});
-    else if (!any(medium->scattering_per_km) && !any(medium->absorption_per_km))
-      list.push_back({kind, false, fmt::format("medium '{}' in scene, but its coefficients are 0", kind)});
-    else
-      list.push_back({kind, true, fmt::format("medium '{}' in scene", kind)});
+    const bool on = medium && (any(medium->scattering_per_km) || any(medium->absorption_per_km));
+    const char* but = medium && !on ? ", but its coefficients are 0" : "";
+    list.push_back({kind, on, fmt::format("{}medium '{}' in scene{}", medium ? "" : "no ", kind, but)});
   }
-  const Sun& sun = scene.sun;
-  list.push_back({"sun disc", sun.disc && any(sun.irradiance),
-                  !sun.disc             ? "sun.disc = false"
-                  : any(sun.irradiance) ? "sun.disc = true"
-                                        : "sun.irradiance is 0"});
-  const bool ground = any(scene.planet.ground_albedo);
+  const bool ground = any(scene.planet.ground_albedo), disc = scene.sun.disc, lit = any(scene.sun.irradiance);
+  list.push_back({"sun disc", disc && lit,
+                  !disc ? "sun.disc = false"
+                  : lit ? "sun.disc = true"
+                        : "sun.irradiance is 0"});
   list.push_back(
       {"ground", ground,
        ground ? "planet.ground_albedo is above 0" : "planet.ground_albedo is 0: the ground reflects nothing"});

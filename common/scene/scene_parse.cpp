@@ -12,11 +12,6 @@ namespace {
 using namespace strict_toml;
 
 template <typename T>
-constexpr bool is_list = requires(T list) {
-  list.push_back(list[0]);
-}
-&&!std::is_same_v<T, std::string>;
-template <typename T>
 constexpr bool is_triple = std::is_same_v<T, glm::dvec3> || std::is_same_v<T, std::optional<glm::dvec3>>;
 
 constexpr int kVersion = 1;
@@ -162,7 +157,7 @@ std::vector<const toml::table*> tables_of(const toml::table& root, const char* n
 // The section that is read next: a member, or one more of it.
 template <typename T>
 auto& begin_section(T& member) {
-  if constexpr (is_list<T>)
+  if constexpr (is_many<T>)
     return member.emplace_back();
   else if constexpr (requires { member.emplace(); })
     return member.emplace();
@@ -237,7 +232,7 @@ Scene parse_scene(const std::string& text, const std::string& file) {
   known.push_back("settings");
   root.finish("section or key", known);
   sections(scene, [&](const char* name, auto& member) {
-    for (const toml::table* section : tables_of(table, name, is_list<std::decay_t<decltype(member)>>, file)) {
+    for (const toml::table* section : tables_of(table, name, is_many<std::decay_t<decltype(member)>>, file)) {
       Reader reader(name, *section, file);
       fields(reader, begin_section(member), scene);
       reader.finish("key");

@@ -17,10 +17,11 @@
 
 #include <erfa.h>
 #include <erfam.h>
+#include <fmt/chrono.h>
 
 #include <chrono>
 #include <cmath>
-#include <string_view>
+#include <regex>
 
 #include "common/error.hpp"
 #include "common/scene/one_line.hpp"
@@ -36,73 +37,24 @@ struct DateTime {
 constexpr const char* kAccepted =
     "accepted is YYYY-MM-DDThh:mm[:ss] in UTC from 1900 to 2100, now, or today hh:mm[:ss]";
 
-// Takes exactly `digits` decimal digits off the front of `text`.
-bool take_digits(std::string_view& text, size_t digits, int& value) {
-  if (text.size() < digits) return false;
-  value = 0;
-  for (size_t i = 0; i < digits; ++i) {
-    if (text[i] < '0' || text[i] > '9') return false;
-    value = value * 10 + (text[i] - '0');
-  }
-  text.remove_prefix(digits);
-  return true;
-}
-
-bool take(std::string_view& text, std::string_view expected) {
-  if (!text.starts_with(expected)) return false;
-  text.remove_prefix(expected.size());
-  return true;
-}
-
-// hh:mm[:ss[.fff]][Z] and nothing after it.
-bool take_time(std::string_view text, DateTime& time) {
-  if (!take_digits(text, 2, time.hour) || !take(text, ":") || !take_digits(text, 2, time.minute)) return false;
-  if (take(text, ":")) {
-    int whole = 0;
-    if (!take_digits(text, 2, whole)) return false;
-    time.second = whole;
-    if (take(text, ".")) {
-      double place = 0.1;
-      int digit = 0;
-      if (text.empty() || text.size() > 10) return false;
-      for (; take_digits(text, 1, digit); place *= 0.1) time.second += place * digit;
-    }
-  }
-  take(text, "Z");
-  return text.empty() && time.hour <= 23 && time.minute <= 59 && time.second < 61.0;  // 60: a leap second
-}
-
-DateTime present() {
-  using namespace std::chrono;
-  const auto now = floor<milliseconds>(system_clock::now());
-  const auto midnight = floor<days>(now);
-  const year_month_day date(midnight);
-  const hh_mm_ss clock(now - midnight);
-  return {static_cast<int>(date.year()),
-          static_cast<int>(static_cast<unsigned>(date.month())),
-          static_cast<int>(static_cast<unsigned>(date.day())),
-          static_cast<int>(clock.hours().count()),
-          static_cast<int>(clock.minutes().count()),
-          static_cast<double>(clock.seconds().count()) + 1e-3 * static_cast<double>(clock.subseconds().count())};
-}
-
+// Whether the calendar has that day and the day that minute is for ERFA to say.
 DateTime read_utc(const std::string& utc) {
-  std::string_view text = utc;
-  if (text == "now" || text == "today") return present();
-  DateTime time;
-  bool good = false;
-  if (take(text, "today ")) {
-    time = present();
-    time.second = 0.0;
-    good = take_time(text, time);
-  } else {
-    good = take_digits(text, 4, time.year) && take(text, "-") && take_digits(text, 2, time.month) && take(text, "-") &&
-           take_digits(text, 2, time.day) && take(text, "T") && take_time(text, time);
-  }
-  const std::chrono::year_month_day date{std::chrono::year(time.year),
-                                         std::chrono::month(static_cast<unsigned>(time.month)),
-                                         std::chrono::day(static_cast<unsigned>(time.day))};
-  if (!good || !date.ok() || time.year < 1900 || time.year > 2100) fail("utc '{}': {}", one_line(utc, 60), kAccepted);
+  static const std::regex form(R"((\d{4})-(\d\d)-(\d\d)T(\d\d):(\d\d)(?::(\d\d)(?:\.(\d{1,10}))?)?Z?)");
+  const auto now = std::chrono::floor<std::chrono::milliseconds>(std::chrono::system_clock::now());
+  const std::tm clock = fmt::gmtime(std::chrono::system_clock::to_time_t(now));
+  std::string text = utc;
+  if (utc == "now" || utc == "today")
+    text = fmt::format("{:%FT%T}.{:03}", clock, now.time_since_epoch().count() % 1000);
+  else if (utc.starts_with("today "))
+    text = fmt::format("{:%F}T{}", clock, utc.substr(6));
+  std::smatch part;
+  const bool good = std::regex_match(text, part, form);
+  const auto number = [&](size_t i) { return good && part[i].matched ? std::stoi(part[i]) : 0; };
+  DateTime time{number(1), number(2), number(3), number(4), number(5), static_cast<double>(number(6))};
+  double place = 0.1;
+  for (const char digit : part[7].str()) time.second += place * (digit - '0'), place *= 0.1;
+  if (time.year < 1900 || time.year > 2100 || time.second >= 61.0)  // 60: a leap second
+    fail("utc '{}': {}", one_line(utc, 60), kAccepted);
   return time;
 }
 
