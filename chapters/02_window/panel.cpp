@@ -50,16 +50,6 @@ gpu::RenderPass create_render_pass(const gpu::Device& device, VkFormat format) {
 constexpr size_t kHistory = 120;
 
 // The names that --scene takes for the scenes that come with the tree; none if they cannot be read.
-std::vector<std::string> shipped_scenes() {
-  std::vector<std::string> names;
-  std::error_code error;
-  for (std::filesystem::directory_iterator i(app::scenes_directory(), error), end; !error && i != end;
-       i.increment(error))
-    if (i->path().extension() == ".toml") names.push_back(i->path().stem().string());
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
 }  // namespace
 
 struct Panel::State {
@@ -70,7 +60,7 @@ struct Panel::State {
   VkExtent2D size{};
   std::vector<float> history = std::vector<float>(kHistory);  // milliseconds a frame
   size_t next = 0;
-  std::vector<std::string> scenes = shipped_scenes();
+  std::vector<std::string> scenes = app::shipped_scenes();
 };
 
 Panel::Panel(GLFWwindow* window, const gpu::Instance& instance, const gpu::Device& device,

@@ -219,6 +219,7 @@ app::Effect multiple_scattering_table() {
                                   ? "the air's optical depth asks for them"
                                   : "multiple_scattering.iterations")};
   };
+  effect.runs_everything = [](const Settings& settings) { return settings.choice("tables") == "all"; };
   effect.key = [](const Scene& scene, const Settings& settings) {
     return fmt::format("{} orders", plan_of(scene, settings).orders);
   };

@@ -126,8 +126,10 @@ std::vector<Row> rows(Options& options, Texts& texts, const Chapter& chapter) {
 
       {"tests", "--golden", "check|update", &texts.golden,
        "Compare the standard views with the goldens, or write them anew"},
+      {"tests", "--survey", "", &options.survey,
+       "Draw every shipped scene, view and odd sizes, small, and say what is wrong"},
       {"tests", "--inject", "FAULT", &options.inject,
-       "Plant a fault: nan, missing-barrier, graph-barrier, wrong-constant, missing-feature"},
+       "Plant a fault: nan, missing-barrier, wrong-constant, missing-feature"},
   };
 }
 
@@ -167,10 +169,12 @@ bool parse_line(CLI::App& cli, int argc, char** argv) {
 
 void check_combination(const Options& options, const Texts& texts) {
   const int modes = !options.bench.empty() + !options.sweep.empty() + !options.probe.empty() + !texts.golden.empty() +
-                    options.list_gpus + (options.explain || !options.against.empty() || !texts.dump.empty());
+                    options.survey + options.list_gpus +
+                    (options.explain || !options.against.empty() || !texts.dump.empty());
   if (modes > 1)
     fail(
-        "one thing at a time: --list-gpus, --bench, --sweep, --probe, --golden, or a picture with --explain, --dump, "
+        "one thing at a time: --list-gpus, --bench, --sweep, --probe, --golden, --survey, or a picture with --explain, "
+        "--dump, "
         "--against");
   if (!texts.golden.empty() && (!texts.set.empty() || (texts.golden == "update" && !options.inject.empty())))
     fail("--golden draws the standard views as they are: without --set, and --golden update without --inject");
@@ -184,8 +188,8 @@ void take_texts(Options& options, const Texts& texts) {
     options.supersample = parse_whole("--supersample", texts.supersample, 1, kMaximumSupersample);
     options.headless = true;
     if (options.list_gpus || !options.bench.empty() || !options.sweep.empty() || !options.probe.empty() ||
-        !texts.golden.empty())
-      fail("--supersample is for pictures: not with --list-gpus, --bench, --sweep, --probe or --golden");
+        !texts.golden.empty() || options.survey)
+      fail("--supersample is for pictures: not with --list-gpus, --bench, --sweep, --probe, --golden or --survey");
   }
   if (!texts.seed.empty()) options.seed = parse_whole("--seed", texts.seed, 0, 2147483647);
   if (!texts.time.empty() && (!parse_number(texts.time, options.time_s.emplace()) || std::abs(*options.time_s) > 1e9))
@@ -197,8 +201,7 @@ void take_texts(Options& options, const Texts& texts) {
   if (!texts.golden.empty())
     options.golden = parse_choice("--golden", texts.golden, {"check", "update"}) ? Golden::update : Golden::check;
   if (!options.inject.empty())
-    parse_choice("--inject", options.inject,
-                 {"nan", "missing-barrier", "graph-barrier", "wrong-constant", "missing-feature"});
+    parse_choice("--inject", options.inject, {"nan", "missing-barrier", "wrong-constant", "missing-feature"});
   for (const std::string& assignment : texts.set) options.set.push_back(split_assignment(assignment));
 }
 

@@ -1,4 +1,4 @@
-// The measuring modes: --bench, --sweep, --probe, --golden.
+// The measuring modes: --bench, --sweep, --probe.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -7,14 +7,9 @@
 
 #include "common/app/progress.hpp"
 #include "common/app/session.hpp"
-#include "common/gpu/shader_file.hpp"
-#include "common/image/atomic_file.hpp"
 #include "common/image/csv.hpp"
 #include "common/image/display.hpp"
-#include "common/image/exr.hpp"
-#include "common/image/png.hpp"
 #include "common/measure/bench_json.hpp"
-#include "common/measure/compare.hpp"
 #include "common/measure/metrics.hpp"
 #include "common/measure/sweep.hpp"
 #include "common/scene/scene_knobs.hpp"
@@ -27,11 +22,6 @@ constexpr uint32_t kRepeats = 20;
 constexpr double kTimedSeconds = 3.0;    // no setting is repeated longer than this
 constexpr double kWarmUpSeconds = 0.15;  // on hardware: an idle GPU takes a tenth of a second to raise its clock
 constexpr VkExtent2D kSweepSize{320, 180};
-constexpr VkExtent2D kGoldenSize{128, 72};
-// How far another driver may be from a golden: see docs/hard_cases.md for the measured differences this leaves room
-// for.
-constexpr double kGoldenRelativeRmse = 2e-3;
-constexpr double kGoldenP99 = 5e-3;
 
 std::string now_utc() {
   const std::time_t now = std::time(nullptr);
@@ -80,28 +70,6 @@ Timings time_frames(const Session& session, Renderer& renderer, uint32_t warm_up
   return timings;
 }
 
-// Another scene and settings in a session of the same device.
-struct OtherScene {
-  Scene scene;
-  Settings settings;
-  Options options;
-  Session session;
-  OtherScene(const Session& from, const StandardView& view)
-      : options(from.options), session{from.chapter,
-                                       options,
-                                       scene,
-                                       settings,
-                                       from.instance,
-                                       from.device,
-                                       {from.device, scene, settings, options.inject}} {
-    (view.frames > 0 ? options.path : options.view) = view.view;
-    (view.frames > 0 ? options.view : options.path).clear();
-    options.frames = view.frames;
-    load_scene_and_settings(from.chapter, view.scene, options.set, options.time_s, scene, settings);
-  }
-  OtherScene(const OtherScene&) = delete;
-};
-
 // The values of the knobs that are compiled into pipelines.
 std::vector<double> pipeline_values(const std::vector<double>& values, const Settings& settings) {
   std::vector<double> compiled;
@@ -119,11 +87,6 @@ std::vector<std::vector<double>> ordered_by_pipeline(std::vector<std::vector<dou
   return ladder;
 }
 
-// A frame of a path, after those before it, which it may remember.
-void draw_up_to(const Session& session, Renderer& renderer, uint32_t frame) {
-  for (uint32_t i = 0; i <= frame; ++i) draw_frame(session, renderer, i);
-}
-
 // What the errors of a sweep are errors against: this program at its best.
 Image draw_reference(OtherScene& other, Program& program, VkExtent2D size, uint32_t frame) {
   const Session& session = other.session;
@@ -137,15 +100,6 @@ std::string describe_reference(const Chapter& chapter) {
   std::string text;
   for (const auto& [name, value] : chapter.reference) text += (text.empty() ? "" : " ") + name + "=" + value;
   return text;
-}
-
-std::string name_of(const StandardView& view, char between) {
-  const std::string frame = view.frames > 0 ? fmt::format("_{}_of_{}", view.frame, view.frames) : "";
-  return fmt::format("{}{}{}{}", view.scene, between, view.view, frame);
-}
-
-void must_have_standard_views(const Session& session) {
-  if (session.chapter.standard_views.empty()) fail("{} has no standard views to measure", session.chapter.name);
 }
 
 }  // namespace
@@ -200,7 +154,8 @@ Exit run_sweep(const Session& session) {
   const size_t rungs = measure::ladder_settings(session.settings).size();
   Progress progress("sweep", rungs * session.chapter.standard_views.size());
   for (const StandardView& standard : session.chapter.standard_views) {
-    OtherScene other(session, standard);
+    OtherScene other(session);
+    other.load(standard);
     // The sun's disc is thousands of times brighter than the sky: in a mean of squares its few pixels are all there is.
     if (other.settings.has("sun.disc") && !other.settings.was_set("sun.disc")) {
       other.settings.set("sun.disc", "off");
@@ -279,72 +234,5 @@ Exit run_probe(const Session& session) {
   fmt::print("{} rays -> {}\n", table.rows, session.options.probe_out);
   return Exit::ok;
 }
-
-namespace {
-
-// Expected, got and their difference in one picture beside the build's shaders, for people to look at.
-void show_difference(const std::string& name, const Image& expected, const Image& got) {
-  const std::filesystem::path directory = gpu::shader_directory().parent_path() / "golden",
-                              file = directory / (name + ".png");
-  std::error_code error;
-  std::filesystem::create_directories(directory, error);  // what stands in the way is said by writing
-  const float exposure = measure::choose_exposure(expected), gain = measure::choose_gain(expected, got, exposure);
-  image::write_png8(file, measure::side_by_side(expected, got, exposure, gain));
-  fmt::print("golden {}: expected, got, difference x {:g}: {}\n", name, gain, file.string());
-}
-
-}  // namespace
-
-// [golden]
-Exit run_golden(const Session& session) {
-  must_have_standard_views(session);
-  const std::filesystem::path directory = gpu::source_directory() / "tests" / "data" / "golden";
-  // The device's name belongs to it: a software driver's tells the width of the processor's vectors.
-  const std::string driver = session.device.candidate().name + ", " + session.device.candidate().driver;
-  Exit result = Exit::ok;
-  for (const StandardView& standard : session.chapter.standard_views) {
-    const std::string name = fmt::format("{:02}_{}", session.chapter.number, name_of(standard, '_'));
-    const std::filesystem::path file = directory / (name + ".exr"), recorded = directory / (name + ".driver");
-    const bool exists = std::filesystem::exists(file);
-    if (!exists && session.options.golden == Golden::check) {
-      fmt::print("golden {}: missing; look at the picture, then --golden update\n", name);
-      result = Exit::mismatch;
-      continue;
-    }
-    OtherScene other(session, standard);
-    const std::unique_ptr<Program> program = other.session.make_program();
-    Renderer renderer(other.session.context, session.chapter, *program, kGoldenSize);
-    draw_up_to(other.session, renderer, standard.frame);
-    const Image picture = renderer.picture();
-    if (exists) {
-      // Bit for bit on the driver that made it; elsewhere arithmetic differs in the last places.
-      const bool same_driver = std::filesystem::exists(recorded) && read_file(recorded, 4096) == driver + "\n";
-      const Image golden = image::read_exr(file);
-      const measure::Errors errors =
-          measure::compare(picture, golden, [](const glm::vec3& v) { return image::display(v, kBaseExposure); });
-      const bool identical = errors.finite() && errors.max_relative == 0.0;
-      const bool close =
-          errors.finite() && errors.relative_rmse <= kGoldenRelativeRmse && errors.p99_relative <= kGoldenP99;
-      const bool good = same_driver ? identical : close;
-      fmt::print("golden {}: {} ({}; {})\n", name,
-                 identical ? "identical"
-                 : good    ? "close"
-                           : "DIFFERS",
-                 measure::describe(errors), same_driver ? "driver of the golden" : "another driver");
-      if (!good && session.options.golden == Golden::check) {
-        show_difference(name, golden, picture);
-        result = Exit::mismatch;
-      }
-    }
-    if (session.options.golden == Golden::update) {
-      std::filesystem::create_directories(directory);
-      image::write_exr(file, picture);
-      write_file_atomically(recorded, driver + "\n");
-      fmt::print("golden {}: written\n", name);
-    }
-  }
-  return result;
-}
-// [/golden]
 
 }  // namespace welkin::app

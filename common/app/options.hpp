@@ -40,6 +40,7 @@ struct Options {
   std::string bench, sweep, probe, probe_out, against;
   // tests
   Golden golden = Golden::none;
+  bool survey = false;
   std::string inject;
 };
 

@@ -19,13 +19,6 @@ namespace {
 
 constexpr VkExtent2D kHeadlessSize{1280, 720};
 
-size_t count_not_finite(const Image& picture) {
-  size_t count = 0;
-  for (const glm::vec4& pixel : picture.pixels)
-    if (!std::isfinite(pixel.r) || !std::isfinite(pixel.g) || !std::isfinite(pixel.b)) ++count;
-  return count;
-}
-
 // "out/a.png", 7 -> "out/a_0007.png".
 std::string numbered(const std::string& file, uint32_t frame) {
   const size_t dot = file.rfind('.');
@@ -90,6 +83,17 @@ void draw_frame(const Session& session, Renderer& renderer, uint32_t index) {
   const Shot shot = session.shot(index);
   session.scene.time_s = shot.time_s;
   renderer.draw(shot.pose, shot.time_s, session.options.seed, index, shot.seconds);
+}
+
+size_t count_not_finite(const Image& picture) {
+  size_t count = 0;
+  for (const glm::vec4& pixel : picture.pixels)
+    if (!std::isfinite(pixel.r) || !std::isfinite(pixel.g) || !std::isfinite(pixel.b)) ++count;
+  return count;
+}
+
+void draw_up_to(const Session& session, Renderer& renderer, uint32_t frame) {
+  for (uint32_t i = 0; i <= frame; ++i) draw_frame(session, renderer, i);
 }
 
 Exit run_picture(const Session& session) {

@@ -134,8 +134,8 @@ void Renderer::draw(const CameraPose& pose, double time_s, uint32_t seed, uint32
   if (drawing_.stale()) drawing_.follow();
   const CameraRays camera = camera_rays(pose, context_.scene, time_s, {size().width, size().height}, seed, index);
   gpu::begin_commands(commands_);
-  drawing_.record(
-      {commands_, targets_.picture, camera, timer_, index, seed, index == 0 ? 0.0 : seconds, pose.position_km});
+  drawing_.record({commands_, targets_.picture, camera, timer_, index, seed, index == 0 ? 0.0 : seconds,
+                   pose.position_km, index == 0});
   gpu::end_commands(commands_);
   gpu::submit_and_wait(context_.device, commands_);
 }

@@ -54,7 +54,7 @@ class Renderer {
  public:
   Renderer(const Context& context, const Chapter& chapter, Program& program, VkExtent2D size);
 
-  // Draws one frame and waits for it. Scene and settings are followed.
+  // Draws one frame and waits for it. Scene and settings are followed. Frame 0 begins anew: nothing is remembered.
   void draw(const CameraPose& pose, double time_s, uint32_t seed, uint32_t index,
             double seconds = kHeadlessFrameSeconds);
 

@@ -56,8 +56,8 @@ std::string bring_path(const std::string& file, Scene& scene) {
 
 Exit run_mode(const Chapter& chapter, Options& options) {
   const bool instrument = !options.bench.empty() || !options.sweep.empty() || !options.probe.empty() ||
-                          options.golden != Golden::none || options.explain || !options.against.empty() ||
-                          !options.dump_what.empty();
+                          options.golden != Golden::none || options.survey || options.explain ||
+                          !options.against.empty() || !options.dump_what.empty();
   Scene scene;
   Settings settings;
   load_scene_and_settings(chapter, options.scene.empty() ? chapter.default_scene : options.scene, options.set,
@@ -87,6 +87,8 @@ Exit run_mode(const Chapter& chapter, Options& options) {
   Exit result = Exit::ok;
   if (options.golden != Golden::none)
     result = run_golden(session);
+  else if (options.survey)
+    result = run_survey(session);
   else if (!options.probe.empty())
     result = run_probe(session);
   else if (!options.sweep.empty())
@@ -110,6 +112,15 @@ Exit run_mode(const Chapter& chapter, Options& options) {
 
 std::filesystem::path scenes_directory() { return gpu::source_directory() / "chapters" / "scenes"; }
 
+std::vector<std::string> shipped_scenes() {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (std::filesystem::directory_iterator i(scenes_directory(), error), end; !error && i != end; i.increment(error))
+    if (i->path().extension() == ".toml") names.push_back(i->path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
 void load_scene_and_settings(const Chapter& chapter, const std::string& scene_name,
                              const std::vector<std::pair<std::string, std::string>>& set, std::optional<double> time_s,
                              Scene& scene, Settings& settings) {
@@ -125,6 +136,31 @@ void load_scene_and_settings(const Chapter& chapter, const std::string& scene_na
   scene.time_s = time_s.value_or(scene.time_s);
   if (scene.time_s != 0.0 && chapter.sky && !scene.sun.latitude_deg)
     fail("--time {}: scene '{}' has no latitude: {}", scene.time_s, scene.name, kNeedsLatitude);
+}
+
+OtherScene::OtherScene(const Session& from)
+    : options(from.options), session{from.chapter,
+                                     options,
+                                     scene,
+                                     settings,
+                                     from.instance,
+                                     from.device,
+                                     {from.device, scene, settings, options.inject}} {}
+
+void OtherScene::load(const StandardView& view) {
+  (view.frames > 0 ? options.path : options.view) = view.view;
+  (view.frames > 0 ? options.view : options.path).clear();
+  options.frames = view.frames;
+  load_scene_and_settings(session.chapter, view.scene, options.set, options.time_s, scene, settings);
+}
+
+std::string name_of(const StandardView& view, char between) {
+  const std::string frame = view.frames > 0 ? fmt::format("_{}_of_{}", view.frame, view.frames) : "";
+  return fmt::format("{}{}{}{}", view.scene, between, view.view, frame);
+}
+
+void must_have_standard_views(const Session& session) {
+  if (session.chapter.standard_views.empty()) fail("{} has no standard views to measure", session.chapter.name);
 }
 
 uint32_t Session::frame_count() const {

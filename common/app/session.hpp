@@ -32,7 +32,23 @@ struct Session {
   uint32_t frame_count() const;  // --frames, else 1, or 24 a second of a path
 };
 
+// Another scene and settings in a session of the same device. A program made of it can follow it to further scenes:
+// what it compiled for one serves the next.
+struct OtherScene {
+  Scene scene;
+  Settings settings;
+  Options options;
+  Session session;
+  explicit OtherScene(const Session& from);
+  OtherScene(const OtherScene&) = delete;
+  void load(const StandardView& view);
+};
+
+// "noon/horizon", or with frame and frames of a path.
+std::string name_of(const StandardView& view, char between);
+
 std::filesystem::path scenes_directory();
+std::vector<std::string> shipped_scenes();  // their names, in the order of the alphabet
 
 // Scene by name or file with its [settings], then --set and --time, all checked. Fills settings with the chapter's
 // knobs and the scene's, and applies the scene's knobs to the scene.
@@ -51,6 +67,14 @@ void write_output(const Session& session, const std::string& file, const CameraP
 // Draws frame `index` of what is asked for; the scene's time is that frame's.
 void draw_frame(const Session& session, Renderer& renderer, uint32_t index);
 
+// A frame of a path, after those before it, which it may remember.
+void draw_up_to(const Session& session, Renderer& renderer, uint32_t frame);
+
+size_t count_not_finite(const Image& picture);  // pixels with a NaN or an infinity
+
+// Throws Error if the chapter has no standard views.
+void must_have_standard_views(const Session& session);
+
 // A view as the chapter's truth shows it; the chapter has one. Without its display pass, whatever that is.
 Image draw_truth(const Session& session, const CameraPose& pose, VkExtent2D size, uint32_t seed);
 
@@ -60,5 +84,6 @@ Exit run_bench(const Session& session);
 Exit run_sweep(const Session& session);
 Exit run_probe(const Session& session);
 Exit run_golden(const Session& session);
+Exit run_survey(const Session& session);
 
 }  // namespace welkin::app

@@ -61,12 +61,15 @@ void Pipelines::forget() {
 }
 
 std::shared_ptr<const NamedPipeline> Pipelines::get(const std::string& shader, const Constants& constants) {
+  const auto& [words, interface] = stage(shader);
+  const SpecializationMap special = specialize(shader, interface, constants);
   std::string key = shader;
-  for (const Constant& constant : constants) key += fmt::format(" {}={}", constant.name, bits_of(constant));
+  for (size_t i = 0; i < special.values.size(); ++i)
+    key += fmt::format(" {}={}", special.entries[i].constantID, special.values[i]);
   const auto found = made_.find(key);
   if (found != made_.end()) return found->second;
 
-  const auto& [words, interface] = stage(shader);
+  if (made_.size() >= kKept) std::erase_if(made_, [](const auto& made) { return made.second.use_count() == 1; });
   NamedPipeline pipeline{
       .shader = shader, .bindings = interface.bindings, .push_constant_bytes = interface.push_constant_bytes};
   std::vector<Binding> slots;
@@ -74,8 +77,7 @@ std::shared_ptr<const NamedPipeline> Pipelines::get(const std::string& shader, c
     if (binding.name == kViewBlock) binding.type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC;
     slots.push_back({binding.slot, binding.type, binding.stages});
   }
-  ComputePipeline made = create_compute_pipeline(device_, shader, words, slots, pipeline.push_constant_bytes,
-                                                 specialize(shader, interface, constants));
+  ComputePipeline made = create_compute_pipeline(device_, shader, words, slots, pipeline.push_constant_bytes, special);
   pipeline.set_layout = std::move(made.set_layout);
   pipeline.layout = std::move(made.layout);
   pipeline.handle = std::move(made.handle);

@@ -36,7 +36,8 @@ struct NamedPipeline {
 // The uniform block of this name is bound with an offset that changes from frame to frame.
 inline constexpr const char* kViewBlock = "View";
 
-// Every pipeline that was asked for, by shader and constants: asked for again, it is the same one.
+// Every pipeline that was asked for, by shader and the constants it has: asked for again, it is the same one. When
+// there are many, those that nobody holds go; ask for a new one only while no frame is in flight.
 class Pipelines {
  public:
   explicit Pipelines(const Device& device) : device_(device) {}
@@ -54,6 +55,7 @@ class Pipelines {
   };
   const Stage& stage(const std::string& shader);
 
+  static constexpr size_t kKept = 64;
   const Device& device_;
   std::map<std::string, Stage> stages_;
   std::map<std::string, std::shared_ptr<const NamedPipeline>> made_;

@@ -211,9 +211,10 @@ ViewBlock Composition::view_of(const Frame& frame, const CameraRays& camera, con
 void Composition::draw(const Frame& frame) {
   CameraRays camera = frame.camera;
   glm::dvec3 position_km = frame.position_km;
-  for (const State& state : states_)
+  for (const State& state : states_) {
     if (state.adjust_camera) state.adjust_camera(camera, position_km);
-  if (context_.settings.has("tables") && context_.settings.choice("tables") == "all") graph_.redo();
+    if (state.effect.runs_everything && state.effect.runs_everything(context_.settings)) graph_.redo();
+  }
   if (cut_ || frame.cut) graph_.cut();
   const uint32_t offset = static_cast<uint32_t>(frames_++ % kViewsInFlight) * view_stride_;
   last_ = view_of(frame, camera, position_km);
@@ -251,8 +252,8 @@ std::string Composition::explain() const {
     const State& state = states_[i];
     const bool passes = graph_.has_pass(i) || state.adjust_camera;
     const std::string why = !state.wanted.why.empty() ? state.wanted.why
-                            : passes                  ? "something wanted needs it"
-                                                      : "nothing wanted needs it";
+                            : passes                  ? "what is shown needs it"
+                                                      : "nothing that is shown needs it";
     text += fmt::format("  {:<22} {:<4} {}\n", state.effect.name, passes ? "on" : "off", why);
   }
   text += graph_.explain();

@@ -83,6 +83,8 @@ struct Effect {
   std::function<Wanted(const Scene&, const Settings&)> wanted{};
   // What of the scene its passes were made for, as text, beside its own knobs.
   std::function<std::string(const Scene&, const Settings&)> key{};
+  // Whether every pass of every effect runs in each frame, to see what they cost; also asked of one that is off.
+  std::function<bool(const Settings&)> runs_everything{};
   std::function<void(Builder&, Board&)> declare;
 };
 // [/effect]

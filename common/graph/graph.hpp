@@ -116,7 +116,7 @@ struct Barrier {
 class Graph {
  public:
   Graph() = default;  // for order and barriers alone: no step may have a shader
-  // inject "graph-barrier": the fault the synchronization test plants, no barrier before a read.
+  // inject "missing-barrier": the fault the synchronization test plants, no barrier before a read.
   Graph(const gpu::Device& device, gpu::Pipelines& pipelines, const std::string& inject = {});
 
   // What is added from now on belongs to this effect; remove() takes all of it out again. No frame is in flight.

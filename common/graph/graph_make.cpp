@@ -34,9 +34,7 @@ gpu::Use use_of(const gpu::ShaderBinding& binding) {
 }  // namespace
 
 Graph::Graph(const gpu::Device& device, gpu::Pipelines& pipelines, const std::string& inject)
-    : device_(&device),
-      pipelines_(&pipelines),
-      drops_barriers_(inject == "graph-barrier" || inject == "missing-barrier") {}
+    : device_(&device), pipelines_(&pipelines), drops_barriers_(inject == "missing-barrier") {}
 
 Resource Graph::hold(Held held) {
   held.owner = owner_;

@@ -216,6 +216,10 @@ class FrontDoor(WelkinCase):
             self.assertRegex(report.read_text(), "32 ?[x×] ?18")
             self.assertEqual("truth" in report.read_text(), "--truth=1" in options)
 
+    def test_the_book_has_the_options(self):
+        """docs/generated/options.txt is chapter 05's --help at 120 columns."""
+        self.assertEqual(self.run_chapter("05", "--help", COLUMNS="120").stdout, (ROOT / "docs" / "generated" / "options.txt").read_text())
+
     def test_overview_and_list(self):
         self.assertIn("./welkin run", self.front().stdout)
         listed = self.front("list").stdout.splitlines()

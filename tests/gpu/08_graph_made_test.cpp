@@ -54,6 +54,21 @@ std::vector<app::Effect> whole_frame() {
 
 }  // namespace
 
+TEST_CASE(
+    "graph: a pipeline is one for the constants its shader has, and goes when nobody holds it and there are many") {
+  gpu::Pipelines pipelines{device()};
+  const auto get = [&](int form, gpu::Constants more = {}) {
+    return pipelines.get("tests/03_rays.comp", joined({{"FORM", form}}, more));
+  };
+  const auto held = get(0);
+  CHECK(get(0) == held);
+  CHECK(get(0, {{"OF_ANOTHER_SHADER", 7, true}}) == held);
+  CHECK(pipelines.count() == 1);
+  for (int form = 1; form <= 200; ++form) get(form);
+  CHECK(pipelines.count() <= 64);
+  CHECK(get(0) == held);
+}
+
 TEST_CASE("graph: a shader says what it has, and a wrong name, type or size is one clear line") {
   const gpu::ShaderInterface exposure = gpu::reflect(gpu::load_spirv("06_display/exposure.comp"), "exposure");
   REQUIRE(exposure.bindings.size() == 2);

@@ -4,15 +4,15 @@ with it and pass without it.
 mutants.py NN [--tested] [--write FILE] [NAME …]     needs the built tests (WELKIN_BUILD) and glslangValidator
 
 The mutants of a chapter are in mutants/NN.py. For each the shaders are copied, one text is replaced (which must be there
-exactly once), every program up to that chapter that includes the file is compiled from the copy beside the healthy others
-(later chapters' are not: they are many, and a mutant whose test needed one would be seen to escape), and
-gpu_tests runs with WELKIN_SHADERS pointing at them. Nothing in the tree or in the build is touched.
+exactly once), and gpu_tests runs with WELKIN_SHADERS pointing at a directory of the build's programs in which those that
+include the file are named pipes: what the test opens is compiled from the copy then, and nothing else is. Nothing in the
+tree or in the build is touched.
 --tested: gpu_tests runs beside this and says whether the tests pass without a mutant; they are not run for that again.
 Exit codes: 0 all caught, 1 one escaped, 2 a mutant no longer fits the source, 77 no Vulkan device.
 """
 import argparse
+import errno
 import os
-import re
 import runpy
 import shutil
 import subprocess
@@ -34,33 +34,60 @@ def programs():
     return found
 
 
-def compile_programs(found, mutated, chapter, shaders, output):
-    """The build's programs under `output`, those up to the chapter that include the mutated file compiled from the copy."""
-    for spirv, sources in found:
-        target = output / spirv
-        target.parent.mkdir(parents=True, exist_ok=True)
-        number = re.search(r"(?:^|/)(\d\d)_", spirv.as_posix())
-        if mutated is None or number and number[1] > chapter or (ROOT / "shaders" / mutated).resolve() not in sources:
-            target.symlink_to(BUILD / "shaders" / spirv)
-            continue
-        source = sources[0]
-        if source.is_relative_to(ROOT / "shaders"):
-            source = shaders / source.relative_to(ROOT / "shaders")
-        done = subprocess.run([os.environ.get("GLSLANG_VALIDATOR", "glslangValidator"), "-V", "--target-env", "vulkan1.2", "--quiet",
-                               f"-I{shaders}", "-o", target, source], capture_output=True, text=True)
-        if done.returncode:
-            return done.stdout + done.stderr
-    return ""
+class Mutated:
+    """The build's programs under `directory`; those that include the mutated file are compiled when they are opened."""
+
+    def __init__(self, found, file, shaders, directory):
+        self.shaders, self.pending, self.message = shaders, {}, ""
+        for spirv, sources in found:
+            target = directory / spirv
+            target.parent.mkdir(parents=True, exist_ok=True)
+            if file is None or (ROOT / "shaders" / file).resolve() not in sources:
+                target.symlink_to(BUILD / "shaders" / spirv)
+                continue
+            os.mkfifo(target)
+            source = sources[0]
+            self.pending[target] = shaders / source.relative_to(ROOT / "shaders") if source.is_relative_to(ROOT / "shaders") else source
+
+    def serve(self):
+        """Compiles what somebody waits to read. Later readers find the file in the pipe's place."""
+        for target, source in list(self.pending.items()):
+            try:
+                pipe = os.open(target, os.O_WRONLY | os.O_NONBLOCK)
+            except OSError as error:
+                if error.errno != errno.ENXIO:
+                    raise
+                continue  # no reader
+            fresh = Path(f"{target}.new")
+            done = subprocess.run([os.environ.get("GLSLANG_VALIDATOR", "glslangValidator"), "-V", "--target-env", "vulkan1.2", "--quiet",
+                                   f"-I{self.shaders}", "-o", fresh, source], capture_output=True, text=True)
+            if done.returncode:
+                self.message = done.stdout + done.stderr
+                fresh.write_bytes(b"")
+            os.replace(fresh, target)
+            os.set_blocking(pipe, True)
+            with os.fdopen(pipe, "wb") as written:
+                written.write(target.read_bytes())
+            del self.pending[target]
 
 
-def run_test(name, spirv):
+def run_test(name, directory, mutated):
     """(failed, output) of one named test; ends the program with 77 where no device is."""
-    done = subprocess.run([BUILD / "bin/gpu_tests", name, "--abort", "-w", "NoTests"], capture_output=True, text=True,
-                          env={**os.environ, "WELKIN_SHADERS": str(spirv)}, timeout=120)
-    if done.returncode == 77:
-        print(done.stderr.strip())
+    with tempfile.TemporaryFile("w+") as output:
+        process = subprocess.Popen([BUILD / "bin/gpu_tests", name, "--abort", "-w", "NoTests"], stdout=output, stderr=subprocess.STDOUT,
+                                   env={**os.environ, "WELKIN_SHADERS": str(directory)})
+        end = time.monotonic() + 120
+        while process.poll() is None:
+            mutated.serve()
+            time.sleep(0.004)
+            if time.monotonic() > end:
+                process.kill()
+        output.seek(0)
+        text = output.read()
+    if process.returncode == 77:
+        print(text.strip())
         sys.exit(77)
-    return done.returncode != 0, done.stdout + done.stderr
+    return process.returncode != 0, text
 
 
 def main():
@@ -81,10 +108,10 @@ def main():
         work = Path(directory)
         shutil.copytree(ROOT / "shaders", work / "shaders")
         (work / "tests").symlink_to(ROOT / "tests")  # harnesses include texts from there, beside shaders/
-        compile_programs(found, None, arguments.chapter, work / "shaders", work / "healthy")
+        whole = Mutated(found, None, work / "shaders", work / "healthy")
         healthy = dict.fromkeys((m[4] for m in chosen), True)
         for test in () if arguments.tested else healthy:
-            broken, output = run_test(test, work / "healthy")
+            broken, output = run_test(test, work / "healthy", whole)
             healthy[test] = not broken
             if broken:
                 print(f"'{test}' does not pass without a mutant:\n{output}", file=sys.stderr)
@@ -96,16 +123,15 @@ def main():
                 verdict, stale = f"STALE: the text is there {source.count(text)} times", stale + 1
             else:
                 path.write_text(source.replace(text, replacement), encoding="utf-8")
-                message = compile_programs(found, file, arguments.chapter, work / "shaders", work / f"mutant{number}")
+                mutated = Mutated(found, file, work / "shaders", work / f"mutant{number}")
+                broken, output = run_test(test, work / f"mutant{number}", mutated)
                 path.write_text(source, encoding="utf-8")
-                if message:
-                    verdict, stale = "STALE: does not compile: " + message.strip().splitlines()[-1], stale + 1
+                if mutated.message:
+                    verdict, stale = "STALE: does not compile: " + mutated.message.strip().splitlines()[-1], stale + 1
                 elif not healthy[test]:
                     verdict, failed = "NOT JUDGED: the test fails without it", failed + 1
-                else:
-                    broken, output = run_test(test, work / f"mutant{number}")
-                    if not broken or "FAILED" not in output:
-                        verdict, failed = "ESCAPED", failed + 1
+                elif not broken or "FAILED" not in output:
+                    verdict, failed = "ESCAPED", failed + 1
             line = f"{name} ({file}) -> {test}: {verdict}"
             print(line, flush=True)
             lines.append(line)
