@@ -33,7 +33,7 @@ std::string now_utc() {
 
 struct Timings {
   std::vector<measure::PassTime> passes;
-  measure::Spread gpu, wall;
+  measure::Spread gpu, wall, record;
 };
 
 // Warm-up (on hardware for kWarmUpSeconds at least), then repeated frames until `repeats` or kTimedSeconds, at least 3.
@@ -48,12 +48,13 @@ Timings time_frames(const Session& session, Renderer& renderer, uint32_t warm_up
   for (uint32_t i = 0; i < warm_up || seconds_since(begin) < wait; ++i)
     draw_frame(session, renderer, session.options.path.empty() ? i : i % session.frame_count());
   std::vector<std::pair<std::string, std::vector<double>>> per_pass;  // one that skips frames keeps its own
-  std::vector<double> gpu, wall;
+  std::vector<double> gpu, wall, record;
   const Clock::time_point start = Clock::now();
   for (uint32_t i = 0; i < repeats; ++i) {
     const Clock::time_point before = Clock::now();
     draw_frame(session, renderer, session.options.path.empty() ? warm_up + i : (warm_up + i) % session.frame_count());
     wall.push_back(std::chrono::duration<double, std::milli>(Clock::now() - before).count());
+    record.push_back(renderer.record_ms());
     double sum = 0.0;
     for (const gpu::PassTime& time : renderer.pass_times()) {
       auto same =
@@ -65,7 +66,7 @@ Timings time_frames(const Session& session, Renderer& renderer, uint32_t warm_up
     gpu.push_back(sum);
     if (i >= 2 && seconds_since(start) > kTimedSeconds) break;
   }
-  Timings timings{.gpu = measure::spread(gpu), .wall = measure::spread(wall)};
+  Timings timings{.gpu = measure::spread(gpu), .wall = measure::spread(wall), .record = measure::spread(record)};
   for (const auto& [name, milliseconds] : per_pass) timings.passes.push_back({name, measure::spread(milliseconds)});
   return timings;
 }
@@ -134,6 +135,7 @@ Exit run_bench(const Session& session) {
                               {},
                               timings.passes,
                               timings.wall,
+                              timings.record,
                               session.device.allocated_bytes(),
                               static_cast<int>(kWarmUp),
                               static_cast<int>(timings.wall.samples),

@@ -2,6 +2,7 @@
 #include "common/app/renderer.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <glm/gtc/packing.hpp>
@@ -132,11 +133,13 @@ Renderer::Renderer(const Context& context, const Chapter& chapter, Program& prog
 
 void Renderer::draw(const CameraPose& pose, double time_s, uint32_t seed, uint32_t index, double seconds) {
   if (drawing_.stale()) drawing_.follow();
+  const auto begin = std::chrono::steady_clock::now();
   const CameraRays camera = camera_rays(pose, context_.scene, time_s, {size().width, size().height}, seed, index);
   gpu::begin_commands(commands_);
   drawing_.record({commands_, targets_.picture, camera, timer_, index, seed, index == 0 ? 0.0 : seconds,
                    pose.position_km, index == 0});
   gpu::end_commands(commands_);
+  record_ms_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   gpu::submit_and_wait(context_.device, commands_);
 }
 

@@ -58,6 +58,7 @@ class Renderer {
   void draw(const CameraPose& pose, double time_s, uint32_t seed, uint32_t index,
             double seconds = kHeadlessFrameSeconds);
 
+  double record_ms() const { return record_ms_; }  // what the CPU took to record the last frame
   std::vector<gpu::PassTime> pass_times() { return timer_.read(); }
   Image picture();  // linear, with the fault --inject nan planted if asked
   Image8 displayed();
@@ -70,6 +71,7 @@ class Renderer {
   gpu::Timer timer_;
   Drawing drawing_;
   Targets targets_;
+  double record_ms_ = 0.0;
 };
 
 // Reads back an rgba32f (or rgba16f) or rgba8 image that compute wrote last (layout GENERAL before and after).

@@ -27,7 +27,7 @@ void to_json(Json& json, const PassTime& pass) {
 }
 void from_json(const Json& json, PassTime& pass) { pass = {json.at("name"), json}; }
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(BenchResult, chapter, scene, view, device, driver, software, width, height, settings,
-                                   passes, wall_ms, bytes, warmup, repeats, date)
+                                   passes, wall_ms, record_ms, bytes, warmup, repeats, date)
 
 double gpu_ms(const BenchResult& result) {
   double sum = 0.0;
@@ -67,6 +67,7 @@ std::string bench_table(const BenchResult& r) {
   };
   for (const PassTime& pass : r.passes) line(pass.name, pass.ms);
   line("wall time", r.wall_ms);
+  line("recording", r.record_ms);
   return out + fmt::format("  GPU total {:.3f} ms, {} held; {} frames timed after {} to warm up\n", gpu_ms(r),
                            human_bytes(r.bytes), r.repeats, r.warmup);
 }

@@ -32,6 +32,7 @@ BenchResult bench(const std::string& chapter) {
           {{"view.steps", "32"}, {"rule", "midpoint"}},
           {{"sky", {1.5, 1.25, 3.0, 9}}, {"display", {0.25, 0.125, 0.5, 9}}},
           {2.0, 1.75, 4.0, 9},
+          {0.25, 0.125, 0.5, 9},
           5'000'000'000,
           3,
           9,
@@ -72,7 +73,7 @@ TEST_CASE("a benchmark comes back from its JSON as it was", "[report]") {
   CHECK((read.passes[0].name == "sky" && read.passes[1].name == "display"));
   CHECK((read.passes[0].ms.median == 1.5 && read.passes[0].ms.minimum == 1.25 && read.passes[0].ms.maximum == 3.0 &&
          read.passes[0].ms.samples == 9));
-  CHECK(read.wall_ms.maximum == 4.0);
+  CHECK((read.wall_ms.maximum == 4.0 && read.record_ms.minimum == 0.125));
   CHECK(gpu_ms(read) == 1.75);
   const std::string text = read_file(dir / "b.json", 10000), table = bench_table(read);
   for (const char* key : {"\"median_ms\": 1.5", "\"min_ms\": 1.25", "\"max_ms\": 3.0", "\"wall_ms\""})
