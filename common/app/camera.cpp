@@ -70,7 +70,7 @@ void fly(CameraPose& pose, const glm::dvec3& axes, double seconds, bool fast, do
   pose.azimuth_deg = std::fmod(azimuth_deg + 360.0, 360.0);
 }
 
-SunPlace advance_sun(double zenith_deg, double azimuth_deg, double latitude_deg, double seconds) {
+SunAngles advance_sun(double zenith_deg, double azimuth_deg, double latitude_deg, double seconds) {
   if (seconds == 0.0) return {zenith_deg, azimuth_deg};
   // Rotate the local direction about the celestial pole (0, cos latitude, sin latitude), westwards.
   const glm::dvec3 sun = direction_from(zenith_deg, azimuth_deg);
@@ -87,7 +87,7 @@ CameraRays camera_rays(const CameraPose& pose, const Scene& scene, double time_s
                        uint32_t frame) {
   const double radius = scene.planet.ground_radius_km;
   const LocalFrame local = local_frame(pose, radius);
-  const SunPlace place =
+  const SunAngles place =
       advance_sun(scene.sun.zenith_deg, scene.sun.azimuth_deg, scene.sun.latitude_deg.value_or(0.0), time_s);
   const glm::dvec3 sun = direction_from(place.zenith_deg, place.azimuth_deg);  // in the frame of the scene's place
   const glm::dvec3 forward = direction_from(90.0 - pose.elevation_deg, pose.azimuth_deg);

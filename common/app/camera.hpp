@@ -8,6 +8,7 @@
 #include <glm/vec3.hpp>
 
 #include "common/scene/scene.hpp"
+#include "common/scene/sun.hpp"
 #include "shaders/interop/camera.h"
 
 namespace welkin::app {
@@ -39,10 +40,7 @@ void turn(CameraPose& pose, double azimuth_deg, double elevation_deg);
 void fly(CameraPose& pose, const glm::dvec3& axes, double seconds, bool fast, double ground_radius_km);
 
 // The sun `seconds` after it stood at (zenith, azimuth): it turns 15 degrees an hour about the pole at this latitude.
-struct SunPlace {
-  double zenith_deg, azimuth_deg;
-};
-SunPlace advance_sun(double zenith_deg, double azimuth_deg, double latitude_deg, double seconds);
+SunAngles advance_sun(double zenith_deg, double azimuth_deg, double latitude_deg, double seconds);
 
 // The camera and the sun in the camera's local frame, for the shader.
 CameraRays camera_rays(const CameraPose& pose, const Scene& scene, double time_s, glm::uvec2 size, uint32_t seed,

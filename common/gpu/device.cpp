@@ -5,26 +5,22 @@
 #include <array>
 #include <charconv>
 #include <numeric>
+#include <tuple>
 
 namespace welkin::gpu {
 namespace {
 
-constexpr uint32_t kNoFamily = ~0u;
-
 // One queue does everything here: compute, triangles, copies. Every desktop driver and lavapipe has such a family
-// first.
-uint32_t find_queue_family(VkPhysicalDevice device, uint32_t* timestamp_bits = nullptr) {
+// first. Its index, and how many bits its timestamps have.
+std::optional<std::pair<uint32_t, uint32_t>> find_queue_family(VkPhysicalDevice device) {
   uint32_t count = 0;
   vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
   std::vector<VkQueueFamilyProperties> families(count);
   vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
   const VkQueueFlags wanted = VK_QUEUE_COMPUTE_BIT | VK_QUEUE_GRAPHICS_BIT;
-  for (uint32_t i = 0; i < count; ++i) {
-    if ((families[i].queueFlags & wanted) != wanted) continue;
-    if (timestamp_bits != nullptr) *timestamp_bits = families[i].timestampValidBits;
-    return i;
-  }
-  return kNoFamily;
+  for (uint32_t i = 0; i < count; ++i)
+    if ((families[i].queueFlags & wanted) == wanted) return std::pair(i, families[i].timestampValidBits);
+  return std::nullopt;
 }
 
 // [wanted]
@@ -40,7 +36,7 @@ std::vector<std::string> missing_features(VkPhysicalDevice device, uint32_t api_
   if (!v13.dynamicRendering) lacks.push_back("dynamicRendering");
   if (!v13.synchronization2) lacks.push_back("synchronization2");
   if (!v12.timelineSemaphore) lacks.push_back("timelineSemaphore");
-  if (find_queue_family(device) == kNoFamily) lacks.push_back("a queue with compute and graphics");
+  if (!find_queue_family(device)) lacks.push_back("a queue with compute and graphics");
   return lacks;
 }
 // [/wanted]
@@ -120,7 +116,7 @@ const Candidate& choose_device(const std::vector<Candidate>& candidates, const s
 
 // [create]
 Device::Device(const Instance& instance, const Candidate& candidate, bool swapchain) : candidate_(candidate) {
-  queue_family_ = find_queue_family(candidate.handle, &timestamp_bits_);
+  std::tie(queue_family_, timestamp_bits_) = find_queue_family(candidate.handle).value();
   const float priority = 1.0f;
   const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
                                       .queueFamilyIndex = queue_family_,

@@ -15,6 +15,13 @@ SpecializationMap numbered(const Specialization& values) {
   return map;
 }
 
+ShaderModule create_shader_module(const Device& device, const std::vector<uint32_t>& words) {
+  const VkShaderModuleCreateInfo info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+                                      .codeSize = words.size() * sizeof(uint32_t),
+                                      .pCode = words.data()};
+  return create<ShaderModule>(device, vkCreateShaderModule, info, "vkCreateShaderModule");
+}
+
 void write(const Device& device, const DescriptorSet& set, uint32_t slot, VkDescriptorType type,
            const VkDescriptorImageInfo* image, const VkDescriptorBufferInfo* buffer) {
   const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
@@ -49,13 +56,6 @@ PipelineLayout create_pipeline_layout(const Device& device, VkDescriptorSetLayou
                                         .pushConstantRangeCount = push_constant_bytes > 0 ? 1u : 0u,
                                         .pPushConstantRanges = &range};
   return create<PipelineLayout>(device, vkCreatePipelineLayout, info, "vkCreatePipelineLayout");
-}
-
-ShaderModule create_shader_module(const Device& device, const std::vector<uint32_t>& words) {
-  const VkShaderModuleCreateInfo info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-                                      .codeSize = words.size() * sizeof(uint32_t),
-                                      .pCode = words.data()};
-  return create<ShaderModule>(device, vkCreateShaderModule, info, "vkCreateShaderModule");
 }
 
 // [compute]

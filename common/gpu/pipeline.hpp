@@ -50,7 +50,6 @@ ComputePipeline create_compute_pipeline(const Device& device, const std::string&
 SetLayout create_set_layout(const Device& device, const std::vector<Binding>& bindings);
 PipelineLayout create_pipeline_layout(const Device& device, VkDescriptorSetLayout set_layout, VkShaderStageFlags stages,
                                       uint32_t push_constant_bytes);
-ShaderModule create_shader_module(const Device& device, const std::vector<uint32_t>& words);
 // Triangles without vertex input (the vertex shader makes or fetches its vertex), culling, blending or depth, drawn
 // into one image of `format`; viewport and scissor are set when recording. Both stages get the constants.
 PipelineHandle create_graphics_pipeline(const Device& device, const std::string& vertex_shader,
@@ -71,22 +70,15 @@ void write_image_view(const Device& device, const DescriptorSet& set, uint32_t s
 void write_buffer(const Device& device, const DescriptorSet& set, uint32_t slot, VkDescriptorType type,
                   const Buffer& buffer, VkDeviceSize range = VK_WHOLE_SIZE);
 
-// Binds pipeline, set and push constants, then starts that many workgroups.
+// Binds pipeline, set and push constants, then starts enough workgroups of local size 8x8 to cover `size`.
 template <typename Push>
-void dispatch(VkCommandBuffer commands, const ComputePipeline& pipeline, const DescriptorSet& set, const Push& push,
-              uint32_t groups_x, uint32_t groups_y = 1, uint32_t groups_z = 1) {
+void dispatch_over(VkCommandBuffer commands, const ComputePipeline& pipeline, const DescriptorSet& set,
+                   const Push& push, VkExtent2D size) {
   static_assert(sizeof(Push) <= 128, "push constants: 128 bytes is what every device has");
   vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.handle);
   vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.layout, 0, 1, &set.handle, 0, nullptr);
   vkCmdPushConstants(commands, pipeline.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(Push), &push);
-  vkCmdDispatch(commands, groups_x, groups_y, groups_z);
-}
-
-// The same with enough workgroups of local size 8x8 to cover `size`.
-template <typename Push>
-void dispatch_over(VkCommandBuffer commands, const ComputePipeline& pipeline, const DescriptorSet& set,
-                   const Push& push, VkExtent2D size) {
-  dispatch(commands, pipeline, set, push, (size.width + 7) / 8, (size.height + 7) / 8);
+  vkCmdDispatch(commands, (size.width + 7) / 8, (size.height + 7) / 8, 1);
 }
 
 }  // namespace welkin::gpu

@@ -27,12 +27,12 @@ struct Range {
   std::vector<const char*> choices = {};  // of a text, a flag or an enum
   const char* text = "";                  // what a text must be; empty: a name
   int first = 0;                          // of an enum: the number of the first choice
+  bool turns = false;                     // an azimuth: brought to 0 <= azimuth < 360
 };
 struct More {
   const char* besides = "";  // a key that it cannot stand beside
   const char* knob = "";     // its name for --set
   bool required = false;
-  bool azimuth = false;  // brought to 0 <= azimuth < 360
 };
 struct Visitor {
   static constexpr bool reading = false;
@@ -88,7 +88,8 @@ void each_of(T& member, const Each& each) {
 
 namespace ranges {
 inline const Range name{1, 64}, coefficient{0, 100, "km^-1"}, share{0, 1}, asymmetry{-0.999, 0.999},
-    around{-360, 360, "deg"}, latitude{-90, 90, "deg"}, place{-4e5, 4e5, "km"}, time{-1e9, 1e9, "s"};
+    around{-360, 360, "deg"}, azimuth{.minimum = -360, .maximum = 360, .unit = "deg", .turns = true},
+    latitude{-90, 90, "deg"}, place{-4e5, 4e5, "km"}, time{-1e9, 1e9, "s"};
 }
 
 template <typename List, typename F>
@@ -160,8 +161,8 @@ void fields(F& f, Sun& sun, Scene&) {
   std::optional<std::string> utc;
   f("zenith_deg", sun.zenith_deg, {0, 180, "deg"}, "angle of the sun from the zenith",
     {.besides = "utc", .knob = "sun.zenith_deg"});
-  f("azimuth_deg", sun.azimuth_deg, ranges::around, "azimuth of the sun, clockwise from north",
-    {.besides = "utc", .knob = "sun.azimuth_deg", .azimuth = true});
+  f("azimuth_deg", sun.azimuth_deg, ranges::azimuth, "azimuth of the sun, clockwise from north",
+    {.besides = "utc", .knob = "sun.azimuth_deg"});
   f("utc", utc, {.text = "quoted text, for example \"2026-06-21T10:30:00\""},
     "date and time in place of the angles: YYYY-MM-DDThh:mm[:ss] from 1900 to 2100, now, today hh:mm[:ss]");
   f("latitude_deg", sun.latitude_deg, ranges::latitude,
@@ -204,7 +205,7 @@ void fields(F& f, View& view, Scene& scene) {
     {.besides = "north_km"});
   f("longitude_deg", longitude_deg, ranges::around, "of the camera, east positive", {.besides = "east_km"});
   f("altitude_km", view.altitude_km, {0, kHighest_km, "km"}, "above the ground");
-  f("azimuth_deg", view.azimuth_deg, ranges::around, "of the look, clockwise from north", {.azimuth = true});
+  f("azimuth_deg", view.azimuth_deg, ranges::azimuth, "of the look, clockwise from north");
   f("azimuth_from_sun_deg", from_sun_deg, ranges::around, "of the look, clockwise from the sun",
     {.besides = "azimuth_deg"});
   f("elevation_deg", view.elevation_deg, ranges::latitude, "of the look above the horizontal; 90: straight up");
@@ -254,8 +255,8 @@ void fields(F& f, Terrain& terrain, Scene& scene) {
   f("size", terrain.size, {64, 4096, "samples"}, "a side of the map that is made", {.besides = "height_map"});
   f("seed", terrain.seed, {0, 1e6}, "of its noise", {.besides = "height_map"});
   f("shadows", terrain.shadows, {}, "terrain keeps the sun from itself and from the air");
-  f("signs_azimuth_deg", terrain.signs_azimuth_deg, ranges::around,
-    "a row of signs 1, 2, 5, 10, 20, 50 and 100 km away in this direction", {.azimuth = true});
+  f("signs_azimuth_deg", terrain.signs_azimuth_deg, ranges::azimuth,
+    "a row of signs 1, 2, 5, 10, 20, 50 and 100 km away in this direction");
   f.must(terrain.extent_km <= widest_km, "", fmt::format("terrain.extent_km = {}", terrain.extent_km),
          fmt::format("accepted is a number from 1 to {:g} km: no map is wider than the planet's radius", widest_km));
   f.must(terrain.height_km <= highest_km, "", fmt::format("terrain.height_km = {}", terrain.height_km),

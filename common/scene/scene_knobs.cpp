@@ -16,8 +16,8 @@ struct KnobVisitor : Visitor {
     const bool set = settings != nullptr && *more.knob && settings->has(more.knob) && settings->was_set(more.knob);
     Knob knob{.name = more.knob, .unit = range.unit, .meaning = meaning};
     if constexpr (std::is_same_v<T, double>) {
-      if (set) value = more.azimuth ? turned(settings->number(more.knob)) : settings->number(more.knob);
-      knob.initial = value, knob.minimum = more.azimuth ? 0.0 : range.minimum, knob.maximum = range.maximum;
+      if (set) value = range.turns ? turned(settings->number(more.knob)) : settings->number(more.knob);
+      knob.initial = value, knob.minimum = range.turns ? 0.0 : range.minimum, knob.maximum = range.maximum;
     } else if constexpr (std::is_same_v<T, glm::dvec3>) {
       if (set) value = glm::dvec3(settings->number(more.knob));
       knob.initial = value.x, knob.minimum = range.minimum, knob.maximum = range.maximum;

@@ -38,8 +38,6 @@ class Reader : public Visitor {
     must(!given(more.besides), key, fmt::format("{} given beside {}", full_name(key), more.besides),
          "accepted is one of the two");
     read(key, *node, value, range);
-    if constexpr (std::is_same_v<T, double>) value = more.azimuth ? turned(value) : value;
-    if constexpr (std::is_same_v<T, std::optional<double>>) value = more.azimuth ? turned(*value) : *value;
   }
   bool given(const char* key) const { return table_.contains(key); }
   void must(bool good, const char* key, const std::string& what, const std::string& accepted) const {
@@ -125,7 +123,7 @@ class Reader : public Visitor {
                           : node.is_number() ? node.as_floating_point()->get()
                                              : NAN;
     if (!(number >= range.minimum && number <= range.maximum)) refuse(key, node, value, range);
-    return number + 0.0;  // -0 becomes 0
+    return range.turns ? turned(number) : number + 0.0;  // -0 becomes 0
   }
 
   const std::string name_;

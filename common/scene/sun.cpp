@@ -106,11 +106,9 @@ SunAngles sun_angles(const std::string& utc, double latitude_deg, double longitu
   const double up = std::cos(latitude) * towards + std::sin(latitude) * to_sun[2];
   const double horizontal = std::hypot(east, north);
 
-  SunAngles angles;
-  angles.zenith_deg = std::atan2(horizontal, up) * ERFA_DR2D;
   // Overhead (or underfoot) there is no azimuth; 0 by convention.
-  angles.azimuth_deg = horizontal > 1e-15 ? eraAnp(std::atan2(east, north)) * ERFA_DR2D : 0.0;
-  return angles;
+  return {.zenith_deg = std::atan2(horizontal, up) * ERFA_DR2D,
+          .azimuth_deg = horizontal > 1e-15 ? eraAnp(std::atan2(east, north)) * ERFA_DR2D : 0.0};
 }
 
 }  // namespace welkin

@@ -154,16 +154,16 @@ TEST_CASE("camera: flying never goes below half a metre") {
 
 TEST_CASE("camera: the sun's day closes, and has noon and sunset in it") {
   for (const double latitude : {-66.0, 0.0, 43.6, 90.0}) {
-    const app::SunPlace back = app::advance_sun(50.0, 120.0, latitude, 86400.0);
+    const SunAngles back = app::advance_sun(50.0, 120.0, latitude, 86400.0);
     CHECK(back.zenith_deg == Approx(50.0).margin(1e-9));
     CHECK(back.azimuth_deg == Approx(120.0).margin(1e-9));
   }
   // Equinox at the equator: from overhead to the western horizon in six hours.
-  const app::SunPlace set = app::advance_sun(0.0, 0.0, 0.0, 6.0 * 3600.0);
+  const SunAngles set = app::advance_sun(0.0, 0.0, 0.0, 6.0 * 3600.0);
   CHECK(set.zenith_deg == Approx(90.0).margin(1e-9));
   CHECK(set.azimuth_deg == Approx(270.0).margin(1e-9));
   // At the pole the sun circles at one height, clockwise: 15 degrees an hour.
-  const app::SunPlace circled = app::advance_sun(70.0, 10.0, 90.0, 3600.0);
+  const SunAngles circled = app::advance_sun(70.0, 10.0, 90.0, 3600.0);
   CHECK(circled.zenith_deg == Approx(70.0).margin(1e-9));
   CHECK(circled.azimuth_deg == Approx(25.0).margin(1e-9));
 }
