@@ -1,88 +1,162 @@
-// Reading SPIR-V, by Khronos' own reader of it, SPIRV-Cross. See spirv.hpp.
+// Reading SPIR-V (specification 1.5: 2.3 physical layout, 3 binary form). See spirv.hpp.
 #include "common/gpu/spirv.hpp"
 
+#include <algorithm>
 #include <map>
-#include <spirv_cross/spirv_cross.hpp>
+#include <spirv/unified1/spirv.hpp>
 
 namespace welkin::gpu {
 namespace {
 
-using spirv_cross::SPIRType;
+struct Instruction {
+  spv::Op op = spv::OpNop;
+  std::vector<uint32_t> words;  // operands
+};
 
-VkShaderStageFlagBits stage_of(spv::ExecutionModel model) {
+constexpr uint32_t kItself = ~0u;  // in place of a member's number: the id as a whole
+
+struct Module {
+  std::map<uint32_t, std::string> names;
+  // Of an id, or a member of it: decoration -> first operand, or 1.
+  std::map<std::pair<uint32_t, uint32_t>, std::map<uint32_t, uint32_t>> decorations;
+  std::map<uint32_t, Instruction> types;  // also constants, by result id
+  std::vector<Instruction> variables;     // type, id, storage class
+  VkShaderStageFlagBits stage = VK_SHADER_STAGE_COMPUTE_BIT;
+
+  std::string name(uint32_t id) const { return names.contains(id) ? names.at(id) : ""; }
+  bool decorated(uint32_t id, spv::Decoration which, uint32_t member = kItself) const {
+    const auto found = decorations.find({id, member});
+    return found != decorations.end() && found->second.contains(which);
+  }
+  uint32_t decoration(uint32_t id, spv::Decoration which, uint32_t member = kItself) const {
+    return decorated(id, which, member) ? decorations.at({id, member}).at(which) : 0;
+  }
+};
+
+std::string text(const uint32_t* words) { return reinterpret_cast<const char*>(words); }
+
+VkShaderStageFlagBits stage_of(uint32_t model) {
   return model == spv::ExecutionModelVertex     ? VK_SHADER_STAGE_VERTEX_BIT
          : model == spv::ExecutionModelFragment ? VK_SHADER_STAGE_FRAGMENT_BIT
                                                 : VK_SHADER_STAGE_COMPUTE_BIT;
 }
 
-VkFormat format_of(spv::ImageFormat image_format) {
-  static const std::map<spv::ImageFormat, VkFormat> formats{{spv::ImageFormatRgba32f, VK_FORMAT_R32G32B32A32_SFLOAT},
-                                                            {spv::ImageFormatRgba16f, VK_FORMAT_R16G16B16A16_SFLOAT},
-                                                            {spv::ImageFormatR32f, VK_FORMAT_R32_SFLOAT},
-                                                            {spv::ImageFormatRg32f, VK_FORMAT_R32G32_SFLOAT},
-                                                            {spv::ImageFormatR16f, VK_FORMAT_R16_SFLOAT},
-                                                            {spv::ImageFormatRg16f, VK_FORMAT_R16G16_SFLOAT},
-                                                            {spv::ImageFormatRgba8, VK_FORMAT_R8G8B8A8_UNORM},
-                                                            {spv::ImageFormatRg8, VK_FORMAT_R8G8_UNORM},
-                                                            {spv::ImageFormatR8, VK_FORMAT_R8_UNORM},
-                                                            {spv::ImageFormatRgba16, VK_FORMAT_R16G16B16A16_UNORM},
-                                                            {spv::ImageFormatR16, VK_FORMAT_R16_UNORM},
-                                                            {spv::ImageFormatR32ui, VK_FORMAT_R32_UINT}};
+void take(Module& module, spv::Op op, std::span<const uint32_t> w) {
+  switch (op) {
+    case spv::OpEntryPoint: module.stage = stage_of(w[0]); break;
+    case spv::OpName: module.names[w[0]] = text(&w[1]); break;
+    case spv::OpDecorate: module.decorations[{w[0], kItself}][w[1]] = w.size() > 2 ? w[2] : 1; break;
+    case spv::OpMemberDecorate: module.decorations[{w[0], w[1]}][w[2]] = w.size() > 3 ? w[3] : 1; break;
+    case spv::OpVariable: module.variables.push_back({op, {w.begin(), w.end()}}); break;
+    case spv::OpConstant:
+    case spv::OpSpecConstant:
+    case spv::OpSpecConstantTrue:
+    case spv::OpSpecConstantFalse: module.types[w[1]] = {op, {w.begin(), w.end()}}; break;
+    default:
+      if (op >= spv::OpTypeVoid && op <= spv::OpTypePointer) module.types[w[0]] = {op, {w.begin(), w.end()}};
+  }
+}
+
+// Bytes of a type in a block; 0 for an array without end.
+uint32_t size_of(const Module& module, uint32_t type) {
+  const Instruction& t = module.types.at(type);
+  switch (t.op) {
+    case spv::OpTypeInt:
+    case spv::OpTypeFloat: return t.words[1] / 8;
+    case spv::OpTypeVector: return size_of(module, t.words[1]) * t.words[2];
+    case spv::OpTypeMatrix: return 16 * t.words[2];
+    case spv::OpTypeArray:
+      return module.decoration(type, spv::DecorationArrayStride) * module.types.at(t.words[2]).words[2];
+    case spv::OpTypeStruct: {
+      uint32_t end = 0;
+      for (uint32_t member = 0; member + 1 < t.words.size(); ++member)
+        end = std::max(end,
+                       module.decoration(type, spv::DecorationOffset, member) + size_of(module, t.words[member + 1]));
+      return end;
+    }
+    default: return 0;
+  }
+}
+
+// True if the block, or every member of it, carries the decoration.
+bool block_is(const Module& module, uint32_t type, spv::Decoration which) {
+  for (uint32_t member = 0; member + 1 < module.types.at(type).words.size(); ++member)
+    if (!module.decorated(type, which, member)) return false;
+  return true;
+}
+
+VkFormat format_of(uint32_t image_format) {
+  static const std::map<uint32_t, VkFormat> formats{{spv::ImageFormatRgba32f, VK_FORMAT_R32G32B32A32_SFLOAT},
+                                                    {spv::ImageFormatRgba16f, VK_FORMAT_R16G16B16A16_SFLOAT},
+                                                    {spv::ImageFormatR32f, VK_FORMAT_R32_SFLOAT},
+                                                    {spv::ImageFormatRg32f, VK_FORMAT_R32G32_SFLOAT},
+                                                    {spv::ImageFormatR16f, VK_FORMAT_R16_SFLOAT},
+                                                    {spv::ImageFormatRg16f, VK_FORMAT_R16G16_SFLOAT},
+                                                    {spv::ImageFormatRgba8, VK_FORMAT_R8G8B8A8_UNORM},
+                                                    {spv::ImageFormatRg8, VK_FORMAT_R8G8_UNORM},
+                                                    {spv::ImageFormatR8, VK_FORMAT_R8_UNORM},
+                                                    {spv::ImageFormatRgba16, VK_FORMAT_R16G16B16A16_UNORM},
+                                                    {spv::ImageFormatR16, VK_FORMAT_R16_UNORM},
+                                                    {spv::ImageFormatR32ui, VK_FORMAT_R32_UINT}};
   const auto found = formats.find(image_format);
   return found != formats.end() ? found->second : VK_FORMAT_UNDEFINED;
 }
 
-ShaderBinding binding_of(const spirv_cross::Compiler& compiler, const spirv_cross::Resource& resource,
-                         VkDescriptorType type) {
-  const SPIRType& held = compiler.get_type(resource.base_type_id);
-  ShaderBinding binding{.name = resource.name,
-                        .slot = compiler.get_decoration(resource.id, spv::DecorationBinding),
-                        .type = type,
-                        .stages = stage_of(compiler.get_execution_model())};
-  const bool block = held.basetype == SPIRType::Struct;
-  if (block) binding.bytes = static_cast<uint32_t>(compiler.get_declared_struct_size(held));
-  if (!block) binding.volume = held.image.dim == spv::Dim3D;
-  if (type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE) binding.format = format_of(held.image.format);
-  if (type != VK_DESCRIPTOR_TYPE_STORAGE_IMAGE && type != VK_DESCRIPTOR_TYPE_STORAGE_BUFFER) return binding;
-  const spirv_cross::Bitset said =
-      block ? compiler.get_buffer_block_flags(resource.id) : compiler.get_decoration_bitset(resource.id);
-  binding.reads = !said.get(spv::DecorationNonReadable);
-  binding.writes = !said.get(spv::DecorationNonWritable);
+ShaderBinding binding_of(const Module& module, uint32_t id, uint32_t type, uint32_t storage_class) {
+  ShaderBinding binding{.slot = module.decoration(id, spv::DecorationBinding), .stages = module.stage};
+  const Instruction& t = module.types.at(type);
+  if (t.op == spv::OpTypeStruct) {
+    binding.name = module.name(type);
+    const bool storage =
+        storage_class == spv::StorageClassStorageBuffer || module.decorated(type, spv::DecorationBufferBlock);
+    binding.type = storage ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER : VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+    binding.bytes = size_of(module, type);
+    binding.reads = !storage || !block_is(module, type, spv::DecorationNonReadable);
+    binding.writes = storage && !block_is(module, type, spv::DecorationNonWritable);
+    return binding;
+  }
+  binding.name = module.name(id);
+  const bool sampled = t.op == spv::OpTypeSampledImage;
+  const Instruction& image = sampled ? module.types.at(t.words[1]) : t;
+  binding.type = sampled ? VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER : VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+  binding.volume = image.words[2] == spv::Dim3D;
+  if (sampled) return binding;
+  binding.format = format_of(image.words[7]);
+  binding.reads = !module.decorated(id, spv::DecorationNonReadable);
+  binding.writes = !module.decorated(id, spv::DecorationNonWritable);
   return binding;
 }
 
 }  // namespace
 
-ShaderInterface reflect(std::span<const uint32_t> words, const std::string& shader) try {
-  const spirv_cross::Compiler compiler(words.data(), words.size());
-  const spirv_cross::ShaderResources resources = compiler.get_shader_resources();
-  ShaderInterface result{.stage = stage_of(compiler.get_execution_model())};
-  std::map<uint32_t, ShaderBinding> bindings;  // by id: in the order in which the shader declares them
-  const auto add = [&](const auto& list, VkDescriptorType type) {
-    for (const spirv_cross::Resource& resource : list) {
-      if (compiler.get_decoration(resource.id, spv::DecorationDescriptorSet) != 0)
-        fail("shader {}: descriptor set 0 is the only one", shader);
-      bindings.emplace(resource.id, binding_of(compiler, resource, type));
-    }
-  };
-  add(resources.uniform_buffers, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER);
-  add(resources.storage_buffers, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
-  add(resources.storage_images, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);
-  add(resources.sampled_images, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER);
-  for (auto& [id, binding] : bindings) result.bindings.push_back(std::move(binding));
-  for (const spirv_cross::Resource& block : resources.push_constant_buffers)
-    result.push_constant_bytes =
-        static_cast<uint32_t>(compiler.get_declared_struct_size(compiler.get_type(block.base_type_id)));
-  for (const auto& [id, number] : compiler.get_specialization_constants()) {
-    const SPIRType::BaseType type = compiler.get_type(compiler.get_constant(id).constant_type).basetype;
-    result.constants.push_back({compiler.get_name(id), number,
-                                type == SPIRType::Boolean ? ShaderConstant::Type::boolean
-                                : type == SPIRType::Float ? ShaderConstant::Type::real
-                                                          : ShaderConstant::Type::integer});
+ShaderInterface reflect(std::span<const uint32_t> words, const std::string& shader) {
+  Module module;
+  for (size_t at = 5; at < words.size();) {  // after the header
+    const uint32_t count = words[at] >> 16;
+    if (count == 0 || at + count > words.size()) fail("shader {}: its SPIR-V is cut short; build it again", shader);
+    take(module, static_cast<spv::Op>(words[at] & 0xffff), words.subspan(at + 1, count - 1));
+    at += count;
+  }
+  ShaderInterface result{.stage = module.stage};
+  for (const Instruction& variable : module.variables) {
+    const uint32_t id = variable.words[1], storage_class = variable.words[2];
+    const uint32_t type = module.types.at(variable.words[0]).words[2];  // of what the pointer points to
+    if (storage_class == spv::StorageClassPushConstant) result.push_constant_bytes = size_of(module, type);
+    if (!module.decorated(id, spv::DecorationBinding)) continue;
+    if (module.decoration(id, spv::DecorationDescriptorSet) != 0)
+      fail("shader {}: descriptor set 0 is the only one", shader);
+    result.bindings.push_back(binding_of(module, id, type, storage_class));
+  }
+  for (const auto& [id, constant] : module.types) {
+    if (!module.decorated(id, spv::DecorationSpecId)) continue;
+    const bool real = constant.op == spv::OpSpecConstant && module.types.at(constant.words[0]).op == spv::OpTypeFloat;
+    const bool boolean = constant.op != spv::OpSpecConstant;
+    result.constants.push_back({module.name(id), module.decoration(id, spv::DecorationSpecId),
+                                boolean ? ShaderConstant::Type::boolean
+                                : real  ? ShaderConstant::Type::real
+                                        : ShaderConstant::Type::integer});
   }
   return result;
-} catch (const spirv_cross::CompilerError&) {
-  fail("shader {}: its SPIR-V is cut short; build it again", shader);
 }
 
 }  // namespace welkin::gpu
