@@ -10,7 +10,7 @@ constexpr uint32_t kWorkgroup = 64;  // as in froxels.comp
 
 bool per_channel(const Settings& settings) { return settings.choice("froxels.transmittance") == "colour"; }
 
-// That share a direction.
+// Number of shader invocations that share one direction of the grid.
 int threads_of(const app::Context& context) {
   const std::string& wanted = context.settings.choice("froxels.threads");
   if (wanted != "auto") return std::stoi(wanted);
@@ -134,7 +134,7 @@ app::Effect aerial_perspective() {
     const app::Context& context = builder.context;
     const uint32_t side = static_cast<uint32_t>(context.settings.integer("froxels.size")),
                    slices = static_cast<uint32_t>(context.settings.integer("froxels.slices"));
-    // 32 bits: at dusk radiance is 1e-6 of noon's, where a half has two or three digits left of its three.
+    // 32 bits: at dusk radiance falls to a millionth of noon's; a half loses digits below 6e-5 and has none below 6e-8.
     const graph::ImageInfo grid{.size = {side, side}, .depth = slices};
     const bool colour = per_channel(context.settings);
     const graph::Resource in_scattering = builder.graph.add_image("froxels", grid);

@@ -36,9 +36,7 @@ gpu::Image upload(const gpu::Device& device, const char* name, VkFormat format, 
     const VkBufferImageCopy copy{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
                                  .imageExtent = {extent.width, extent.height, 1}};
     vkCmdCopyBufferToImage(commands, staging.handle, image.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
-    gpu::image_barrier(
-        commands, image.handle, gpu::kTransferWrite,
-        {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, VK_IMAGE_LAYOUT_GENERAL});
+    gpu::image_barrier(commands, image.handle, gpu::kTransferWrite, gpu::kSampledRead);
   });
   return image;
 }
@@ -113,7 +111,8 @@ static Knob shadow_knob() {
 static std::vector<Knob> surface_knobs() {
   return {
       {.name = "terrain.detail",
-       .meaning = "relief and cover finer than the map's: scales of noise down to centimetres, none wider than a pixel",
+       .meaning =
+           "relief and cover finer than the map's: noise down to centimetres; waves too fine for a pixel are left out",
        .initial = 1,
        .choices = {"off", "on"},
        .rebuilds = true},

@@ -61,9 +61,9 @@ void fly(CameraPose& pose, const glm::dvec3& axes, double seconds, bool fast, do
   const glm::dvec3 right = direction_from(90.0, pose.azimuth_deg + 90.0);
   const glm::dvec3 local = right * axes.x + look * axes.y + glm::dvec3(0.0, 0.0, axes.z);
   pose.position_km += (frame.east * local.x + frame.north * local.y + frame.up * local.z) * speed_km_s * seconds;
-  const double now = altitude_km(pose, ground_radius_km), right_km = std::clamp(now, kLowest_km, kHighest_km);
+  const double now = altitude_km(pose, ground_radius_km), clamped_km = std::clamp(now, kLowest_km, kHighest_km);
   const LocalFrame there = local_frame(pose, ground_radius_km);
-  pose.position_km += there.up * (right_km - now);
+  pose.position_km += there.up * (clamped_km - now);
   // The heading, level, as it was: but seen from the new frame.
   const glm::dvec3 ahead = glm::cross(there.up, frame.east * right.x + frame.north * right.y);
   const double azimuth_deg = glm::degrees(std::atan2(glm::dot(ahead, there.east), glm::dot(ahead, there.north)));

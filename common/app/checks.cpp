@@ -62,7 +62,7 @@ struct Findings {
 
 std::string finite_fault(const Image& picture) {
   const size_t count = count_not_finite(picture);
-  return count > 0 ? fmt::format("{} pixels are not finite", count) : std::string();
+  return count > 0 ? fmt::format("{} pixel{} not finite", count, count == 1 ? " is" : "s are") : std::string();
 }
 
 void survey_scenes(Shown& shown, Findings& findings) {
@@ -97,7 +97,8 @@ std::vector<std::string> names_of(const std::vector<gpu::PassTime>& times) {
 void survey_media(Shown& shown, Findings& findings) {
   const StandardView view{"noon", "horizon"};
   Renderer& whole = shown.show(view, kSurveySize);
-  draw_frame(shown.other.session, whole, 1);  // the first also runs what only a change makes run
+  draw_frame(shown.other.session, whole,
+             1);  // frame 0 also ran passes that run only on a change; frame 1 is the steady state
   const Image picture = whole.picture();
   const std::vector<std::string> passes = names_of(whole.pass_times());
   const uint64_t bytes = shown.other.session.device.allocated_bytes();
@@ -107,10 +108,10 @@ void survey_media(Shown& shown, Findings& findings) {
     std::erase_if(shown.other.scene.media, [&](const Medium& other) { return other.kind == medium.kind; });
     shown.program->rebuild();
     for (const uint32_t frame : {0u, 1u}) draw_frame(shown.other.session, whole, frame);
-    const bool cheaper = shown.other.session.device.allocated_bytes() <= bytes,
+    const bool no_more_bytes = shown.other.session.device.allocated_bytes() <= bytes,
                same_passes = names_of(whole.pass_times()) == passes,
                seen = !std::ranges::equal(whole.picture().pixels, picture.pixels);
-    findings.add(fmt::format("{} without {}", name_of(view, '/'), medium.kind), !cheaper       ? "holds more bytes"
+    findings.add(fmt::format("{} without {}", name_of(view, '/'), medium.kind), !no_more_bytes ? "holds more bytes"
                                                                                 : !same_passes ? "has other passes"
                                                                                 : !seen
                                                                                     ? "is the same picture"

@@ -1,4 +1,6 @@
 // The measuring modes: --bench, --sweep, --probe.
+#include <fmt/chrono.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -23,20 +25,15 @@ constexpr double kTimedSeconds = 3.0;    // no setting is repeated longer than t
 constexpr double kWarmUpSeconds = 0.15;  // on hardware: an idle GPU takes a tenth of a second to raise its clock
 constexpr VkExtent2D kSweepSize{320, 180};
 
-std::string now_utc() {
-  const std::time_t now = std::time(nullptr);
-  std::tm parts{};
-  gmtime_r(&now, &parts);
-  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", parts.tm_year + 1900, parts.tm_mon + 1, parts.tm_mday,
-                     parts.tm_hour, parts.tm_min, parts.tm_sec);
-}
+std::string now_utc() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))); }
 
 struct Timings {
   std::vector<measure::PassTime> passes;
   measure::Spread gpu, wall, record;
 };
 
-// Warm-up (on hardware for kWarmUpSeconds at least), then repeated frames until `repeats` or kTimedSeconds, at least 3.
+// Warm-up (on hardware for kWarmUpSeconds at least), then repeated frames until `repeats` or kTimedSeconds; three
+// frames are timed however long they take, if as many are asked for.
 // For a path: its frames, repeated.
 Timings time_frames(const Session& session, Renderer& renderer, uint32_t warm_up, uint32_t repeats) {
   using Clock = std::chrono::steady_clock;

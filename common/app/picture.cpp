@@ -122,12 +122,12 @@ Exit run_picture(const Session& session) {
   };
   Progress progress("drawing", frames);
   for (uint32_t i = 0; i < frames; ++i) {
+    const uint64_t before = session.device.allocation_count();
     draw_frame(session, renderer, i);
+    if (i > 0) allocations += session.device.allocation_count() - before;
     if (writes && !options.path.empty()) save(i);
-    if (i == 0) allocations = session.device.allocation_count();
     progress.step();
   }
-  allocations = session.device.allocation_count() - allocations;
 
   const Image picture = image::averaged(renderer.picture(), options.supersample);
   const Image8 displayed = image::averaged(renderer.displayed(), options.supersample);

@@ -56,32 +56,38 @@ const Pipelines::Stage& Pipelines::stage(const std::string& shader) {
 const ShaderInterface& Pipelines::interface_of(const std::string& shader) { return stage(shader).interface; }
 
 void Pipelines::forget() {
+  made_.clear();  // waits for those being made, which read the stages
   stages_.clear();
-  made_.clear();
 }
 
-std::shared_ptr<const NamedPipeline> Pipelines::get(const std::string& shader, const Constants& constants) {
-  const auto& [words, interface] = stage(shader);
-  const SpecializationMap special = specialize(shader, interface, constants);
+const Pipelines::Making& Pipelines::begin(const std::string& shader, const Constants& constants) {
+  const Stage& stage_read = stage(shader);
+  const SpecializationMap special = specialize(shader, stage_read.interface, constants);
   std::string key = shader;
   for (size_t i = 0; i < special.values.size(); ++i)
     key += fmt::format(" {}={}", special.entries[i].constantID, special.values[i]);
   const auto found = made_.find(key);
   if (found != made_.end()) return found->second;
+  if (made_.size() >= kKept) std::erase_if(made_, [](const auto& made) { return made.second.get().use_count() == 1; });
+  const auto make_it = [this, &stage_read, shader, special] { return make(shader, stage_read, special); };
+  return made_.emplace(key, std::async(std::launch::async, make_it)).first->second;
+}
 
-  if (made_.size() >= kKept) std::erase_if(made_, [](const auto& made) { return made.second.use_count() == 1; });
+std::shared_ptr<const NamedPipeline> Pipelines::make(const std::string& shader, const Stage& read,
+                                                     const SpecializationMap& special) const {
   NamedPipeline pipeline{
-      .shader = shader, .bindings = interface.bindings, .push_constant_bytes = interface.push_constant_bytes};
+      .shader = shader, .bindings = read.interface.bindings, .push_constant_bytes = read.interface.push_constant_bytes};
   std::vector<Binding> slots;
   for (ShaderBinding& binding : pipeline.bindings) {
     if (binding.name == kViewBlock) binding.type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC;
     slots.push_back({binding.slot, binding.type, binding.stages});
   }
-  ComputePipeline made = create_compute_pipeline(device_, shader, words, slots, pipeline.push_constant_bytes, special);
+  ComputePipeline made =
+      create_compute_pipeline(device_, shader, read.words, slots, pipeline.push_constant_bytes, special);
   pipeline.set_layout = std::move(made.set_layout);
   pipeline.layout = std::move(made.layout);
   pipeline.handle = std::move(made.handle);
-  return made_.emplace(key, std::make_shared<const NamedPipeline>(std::move(pipeline))).first->second;
+  return std::make_shared<const NamedPipeline>(std::move(pipeline));
 }
 
 }  // namespace welkin::gpu

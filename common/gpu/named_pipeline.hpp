@@ -1,6 +1,7 @@
 // Pipelines whose bindings and constants have names: those their shader gives them. Used by the frame graph.
 #pragma once
 
+#include <future>
 #include <map>
 #include <memory>
 #include <string>
@@ -43,7 +44,13 @@ class Pipelines {
   explicit Pipelines(const Device& device) : device_(device) {}
   // shader: as in load_spirv. Throws Error on a constant the shader does not have or that has another type there,
   // saying which it has.
-  std::shared_ptr<const NamedPipeline> get(const std::string& shader, const Constants& constants);
+  std::shared_ptr<const NamedPipeline> get(const std::string& shader, const Constants& constants) {
+    return begin(shader, constants).get();
+  }
+  // Begins to make one on another thread, if it is not there: several that are begun before the first is asked for are
+  // made beside each other.
+  using Making = std::shared_future<std::shared_ptr<const NamedPipeline>>;
+  const Making& begin(const std::string& shader, const Constants& constants);
   const ShaderInterface& interface_of(const std::string& shader);
   void forget();  // shaders were compiled anew
   size_t count() const { return made_.size(); }
@@ -54,11 +61,13 @@ class Pipelines {
     ShaderInterface interface;
   };
   const Stage& stage(const std::string& shader);
+  std::shared_ptr<const NamedPipeline> make(const std::string& shader, const Stage& read,
+                                            const SpecializationMap& special) const;
 
   static constexpr size_t kKept = 64;
   const Device& device_;
   std::map<std::string, Stage> stages_;
-  std::map<std::string, std::shared_ptr<const NamedPipeline>> made_;
+  std::map<std::string, Making> made_;
 };
 
 }  // namespace welkin::gpu

@@ -56,7 +56,7 @@ PipelineHandle create_graphics_pipeline(const Device& device, const std::string&
                                         const std::string& fragment_shader, VkPipelineLayout layout, VkFormat format,
                                         const Specialization& specialization = {});
 
-// One descriptor set with a pool of its own: allocated once, written once, never in a frame.
+// One descriptor set with a pool of its own: allocated once, written only while no frame is in flight.
 struct DescriptorSet {
   DescriptorPool pool;
   VkDescriptorSet handle = VK_NULL_HANDLE;

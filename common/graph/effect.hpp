@@ -2,7 +2,8 @@
 // them.
 //
 // To add one, write a function that returns an Effect, and name it in a chapter's list: the composition builds it where
-// it is wanted, builds it anew when its key changes, explains it, and tests that without it nothing of it is there.
+// it is wanted, builds it anew when its key changes, and explains it. A test shows of each that without it nothing of
+// it is there.
 #pragma once
 
 #include <any>

@@ -150,8 +150,7 @@ class Graph {
   void set_view(const gpu::Buffer* view, uint32_t bytes) { view_ = view, view_bytes_ = bytes; }
 
   void redo();  // every pass runs in the next frame
-  // Whether the last frame's image of a history is that: written in the frame before, of the same size, and not cut
-  // off.
+  // True if the other image of a history is the previous frame's: written in it, of the same size, no cut since.
   bool valid(Resource history) const;
   void cut();  // no history is valid in the next frame
 
@@ -171,7 +170,7 @@ class Graph {
   std::vector<std::string> resources(uint32_t owner) const;  // of one effect's that exist
   uint64_t bytes() const;                                    // of all that are its own
   uint64_t runs(const std::string& pass) const;              // 0 for a pass there is not
-  bool has_pass(uint32_t owner) const;                       // that is needed
+  bool has_pass(uint32_t owner) const;                       // whether this effect has a pass that is needed
 
  private:
   struct State {                            // what happened to a mip last
@@ -196,7 +195,7 @@ class Graph {
     gpu::Use between_frames;
     bool output = false;
     bool written_now = false;  // in the frame being recorded
-    bool last_valid = false;   // a history's: last frame's image is that
+    bool last_valid = false;   // a history's: its other image is the previous frame's
     bool outdated = false;     // its content is gone or no longer right
     uint64_t version = 0;
     uint64_t written_frame = 0;  // of its last write, counted from 1

@@ -181,6 +181,9 @@ void Graph::make_all(VkExtent2D picture_size) {
     else if (held.kind != Kind::filled && held.kind != Kind::imported)
       held.own_images = {}, held.own_buffer = {}, held.outdated = true;
   }
+  for (const Counted* counted : order_)
+    for (const Step& step : counted->pass.steps)
+      if (!step.shader.empty()) pipelines_->begin(step.shader, step.constants);
   for (Counted* counted : order_) make(*counted);
   image_barriers_.reserve(barriers);
   buffer_barriers_.reserve(barriers);

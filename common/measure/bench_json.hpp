@@ -23,7 +23,7 @@ struct BenchResult {
   uint32_t width = 0, height = 0;
   std::map<std::string, std::string> settings;  // knob, value as text
   std::vector<PassTime> passes;
-  Spread wall_ms;               // one frame from submission to completion, seen by the CPU
+  Spread wall_ms;               // one frame as the CPU sees it: recorded, submitted, finished
   Spread record_ms;             // of that, what the CPU takes to record its commands
   uint64_t bytes = 0;           // device memory held
   int warmup = 0, repeats = 0;  // frames run before the timing, and timed

@@ -89,7 +89,7 @@ void each_of(T& member, const Each& each) {
 namespace ranges {
 inline const Range name{1, 64}, coefficient{0, 100, "km^-1"}, share{0, 1}, asymmetry{-0.999, 0.999},
     around{-360, 360, "deg"}, azimuth{.minimum = -360, .maximum = 360, .unit = "deg", .turns = true},
-    latitude{-90, 90, "deg"}, place{-4e5, 4e5, "km"}, time{-1e9, 1e9, "s"};
+    latitude{-90, 90, "deg"}, elevation{-90, 90, "deg"}, place{-4e5, 4e5, "km"}, time{-1e9, 1e9, "s"};
 }
 
 template <typename List, typename F>
@@ -208,7 +208,7 @@ void fields(F& f, View& view, Scene& scene) {
   f("azimuth_deg", view.azimuth_deg, ranges::azimuth, "of the look, clockwise from north");
   f("azimuth_from_sun_deg", from_sun_deg, ranges::around, "of the look, clockwise from the sun",
     {.besides = "azimuth_deg"});
-  f("elevation_deg", view.elevation_deg, ranges::latitude, "of the look above the horizontal; 90: straight up");
+  f("elevation_deg", view.elevation_deg, ranges::elevation, "of the look above the horizontal; 90: straight up");
   f("fov_deg", view.fov_deg, {1, 170, "deg"}, "from the lower to the upper edge");
   must_be_unique(f, scene.views, "view");
   if (from_sun_deg) view.azimuth_deg = turned(scene.sun.azimuth_deg + *from_sun_deg);

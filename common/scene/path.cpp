@@ -29,7 +29,7 @@ double smooth(const std::vector<double>& times, const std::vector<double>& value
   };
   const size_t i = before(times, time);
   const double span = times[i + 1] - times[i], u = (time - times[i]) / span, v = 1.0 - u;
-  // Where nothing changes, nothing does, to the last bit: what waits for a still camera sees one.
+  // Written as a difference, so that equal values give exactly that value: passes that wait for a still camera see one.
   return values[i] + (values[i + 1] - values[i]) * u * u * (1.0 + 2.0 * v) +
          span * u * v * (v * slope(i) - u * slope(i + 1));
 }

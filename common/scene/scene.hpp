@@ -2,7 +2,7 @@
 //
 // Units: km, km^-1, degrees where a name says _deg. Radiance is per unit of solar irradiance at the top of the
 // atmosphere. Frame at a view: x = east, y = north, z = up; azimuth in degrees clockwise from north (0 = north, 90 =
-// east). What a file may say of each, its ranges and meanings, is one table: fields.cpp.
+// east). What a file may say of each, its ranges and meanings, is one table: fields.hpp.
 #pragma once
 
 #include <filesystem>

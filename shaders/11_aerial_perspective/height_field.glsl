@@ -73,7 +73,7 @@ float steps_to_border(HeightField field, vec2 grid, vec2 rate, ivec2 node, int l
 struct Hit {
   float t_km;       // of the terrain, below 0: none
   float approach;   // by how much the ray comes nearer to the surface per km, where it meets it
-  float edge_km;    // of the nearest edge before it
+  float edge_km;    // of the edge before it that covers most of the pixel
   float edge_share; // of the pixel that the edge covers, 0: none
   int visits;       // nodes that were looked at
 };

@@ -20,7 +20,7 @@ struct ViewBlock {
   vec3 position_rest_km;   // and what the rounding left out
   int cut;                 // 1: nothing of the frames before may be used
   vec3 last_position_km;
-  float jitter_x;  // of the rays, in pixels
+  float jitter_x;  // of the rays, in pixels; 0 until a chapter jitters them
   vec3 last_position_rest_km;
   float jitter_y;
   vec3 east;  // the camera's local frame in the global one; up is their cross product

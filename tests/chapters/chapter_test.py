@@ -22,7 +22,7 @@ class ChapterCase(WelkinCase):
     known = None
 
     def knobs(self):
-        """Names of all knobs, those of the scene included."""
+        """All knobs by name, those of the scene included."""
         if ChapterCase.known is None:
             done = self.run_chapter(NUMBER, "--dump", "knobs", "knobs.json")
             self.assertEqual(done.returncode, 0, done.stderr)
@@ -71,19 +71,20 @@ class Golden(ChapterCase):
 
 class Sync(ChapterCase):
     def draw(self, *arguments):
-        """Exit code, messages and picture of three small frames under synchronization validation."""
+        """What is said of three small frames under synchronization validation, and the picture."""
         done = self.run_chapter(NUMBER, "--headless", "--size", "40x24", "--frames", "3", "--validation", "sync", "--output", "p.exr", *arguments)
-        return done.returncode, done.stderr, (self.directory / "p.exr").read_bytes()
+        return done, (self.directory / "p.exr").read_bytes()
 
     def test_no_message_and_a_planted_fault_is_caught(self):
         """And why the layer is needed: on a software driver the faulty picture is the same, bit for bit."""
-        code, messages, good = self.draw()
-        self.assertEqual(code, 0, messages)
-        self.assertNotIn("validation:", messages)
-        code, messages, faulty = self.draw("--inject", "missing-barrier")
-        self.assertEqual(code, 3, messages)
-        self.assertIn("READ_AFTER_WRITE", messages)
-        self.assertEqual(faulty, good)
+        done, good = self.draw()
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotIn("validation:", done.stderr)
+        done, faulty = self.draw("--inject", "missing-barrier")
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn("READ_AFTER_WRITE", done.stderr)
+        if ", software)" in done.stdout:
+            self.assertEqual(faulty, good)
 
     def test_probe_is_clean(self):
         if not self.has_sky():
@@ -178,7 +179,7 @@ class Picture(ChapterCase):
             self.skipTest("shown by the chapters before the sky, which draw quickly")
         done = self.run_chapter(NUMBER, "--survey", "--inject", "nan")
         self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
-        self.assertIn("1 pixels are not finite", done.stdout)
+        self.assertIn("1 pixel is not finite", done.stdout)
         done = self.run_chapter(NUMBER, "--headless", "--size", "16x9", "--inject", "nan", "--output", "p.png")
         self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
 

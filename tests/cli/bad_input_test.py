@@ -50,6 +50,8 @@ class CommandLine(WelkinCase):
     def test_choices(self):
         self.refuse(["--validation", "maybe"], "--validation", "off, on, sync")
         self.refuse(["--golden", "please"], "--golden", "check, update")
+        self.refuse(["--golden", "update", "--seed", "7"], "--golden", "--seed")
+        self.refuse(["--survey", "--size", "8x8"], "--survey", "--size")
         self.refuse(["--inject", "bug"], "--inject", "missing-barrier")
         self.refuse(["--dump", "soul", "x.exr"], "--dump", "picture")
         self.refuse(["--dump", "picture"], "--dump")

@@ -11,6 +11,7 @@ tree or in the build is touched.
 Exit codes: 0 all caught, 1 one escaped, 2 a mutant no longer fits the source, 77 no Vulkan device.
 """
 import argparse
+import contextlib
 import errno
 import os
 import runpy
@@ -22,7 +23,7 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-BUILD = Path(os.environ.get("WELKIN_BUILD", ROOT / "build"))
+BUILD = Path(os.environ.get("WELKIN_BUILD", ROOT / "build")).resolve()
 
 
 def programs():
@@ -66,7 +67,7 @@ class Mutated:
                 fresh.write_bytes(b"")
             os.replace(fresh, target)
             os.set_blocking(pipe, True)
-            with os.fdopen(pipe, "wb") as written:
+            with contextlib.suppress(BrokenPipeError), os.fdopen(pipe, "wb") as written:  # a reader that was killed
                 written.write(target.read_bytes())
             del self.pending[target]
 
@@ -103,6 +104,8 @@ def main():
     mutants = runpy.run_path(str(lists / f"{arguments.chapter}.py"))["MUTANTS"]
     found = programs()
     chosen = [m for m in mutants if not arguments.names or any(n in m[0] for n in arguments.names)]
+    if not chosen:
+        parser.error(f"no mutant's name contains {' or '.join(arguments.names)}")
     start, lines, failed, stale = time.monotonic(), [], 0, 0
     with tempfile.TemporaryDirectory(prefix="welkin-mutants-") as directory:
         work = Path(directory)
