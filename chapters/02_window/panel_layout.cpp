@@ -216,7 +216,8 @@ void message_box(PixelSize size, const PanelState& state) {
   if (state.message.empty()) return;
   ImGui::SetNextWindowPos({kMargin, size.height - kMargin}, ImGuiCond_Always, {0.0f, 1.0f});
   ImGui::SetNextWindowSize({state.width, 0.0f});
-  if (ImGui::Begin("##message", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs)) {
+  if (ImGui::Begin("##message", nullptr,
+                   ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing)) {
     ImGui::PushTextWrapPos(0.0f);
     ImGui::TextColored({1.0f, 0.82f, 0.4f, 1.0f}, "%s", state.message.c_str());
     ImGui::PopTextWrapPos();

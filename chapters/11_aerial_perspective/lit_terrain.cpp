@@ -20,6 +20,7 @@ app::Effect lit_terrain() {
       key += fmt::format("{} ", settings.number(knob));
     return key;
   };
+  // [declare]
   effect.declare = [](app::Builder& builder, app::Board& board) {
     const app::Context& context = builder.context;
     const TerrainMaps& maps = board.get<TerrainMaps>("terrain");
@@ -45,6 +46,7 @@ app::Effect lit_terrain() {
     pass.steps.push_back(std::move(step));
     builder.graph.add(std::move(pass));
   };
+  // [/declare]
   return effect;
 }
 // [/compose]

@@ -176,9 +176,13 @@ void check_combination(const Options& options, const Texts& texts) {
         "one thing at a time: --list-gpus, --bench, --sweep, --probe, --golden, --survey, or a picture with --explain, "
         "--dump, --against");
   const bool other_view = !options.scene.empty() || !options.view.empty() || !options.path.empty() ||
-                          !texts.size.empty() || !texts.seed.empty() || !texts.time.empty();
+                          !texts.size.empty() || !texts.seed.empty() || !texts.time.empty() || !texts.frames.empty() ||
+                          !options.output.empty();
   if ((!texts.golden.empty() || options.survey) && other_view)
-    fail("--golden and --survey draw views of their own: without --scene, --view, --path, --size, --seed, --time");
+    fail(
+        "--golden and --survey draw views of their own and write none: without --scene, --view, --path, --size, "
+        "--seed, "
+        "--time, --frames, --output");
   if (!texts.golden.empty() && (!texts.set.empty() || (texts.golden == "update" && !options.inject.empty())))
     fail("--golden draws the standard views as they are: without --set, and --golden update without --inject");
 }

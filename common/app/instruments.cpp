@@ -120,6 +120,7 @@ Exit run_bench(const Session& session) {
   const bool still = session.options.path.empty();
   const uint32_t repeats = session.options.frames > 0 || !still ? session.frame_count() : kRepeats;
   const Timings timings = time_frames(session, renderer, kWarmUp, repeats);
+  const Shot last = session.shot(still ? 0 : static_cast<uint32_t>(kWarmUp + timings.wall.samples - 1) % repeats);
   const gpu::Candidate& device = session.device.candidate();
   measure::BenchResult result{session.chapter.name,
                               session.scene.name,
@@ -139,7 +140,7 @@ Exit run_bench(const Session& session) {
                               now_utc()};
   for (const Knob& knob : session.settings.knobs()) result.settings[knob.name] = session.settings.text(knob.name);
   if (!session.options.output.empty())
-    write_output(session, session.options.output, session.first_pose(), renderer.picture(), renderer.displayed());
+    write_output(session, session.options.output, last.pose, renderer.picture(), renderer.displayed());
   measure::write_bench(session.options.bench, result);
   fmt::print("{}", measure::bench_table(result));
   return Exit::ok;

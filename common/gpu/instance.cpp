@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <mutex>
 
 namespace welkin::gpu {
 namespace {
@@ -17,6 +18,8 @@ VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT
   std::string line = data->pMessage != nullptr ? data->pMessage : "(no text)";
   std::replace(line.begin(), line.end(), '\n', ' ');
   std::fprintf(stderr, "validation: %s\n", line.c_str());
+  static std::mutex mutex;  // pipelines are made on threads
+  const std::lock_guard lock(mutex);
   static_cast<std::vector<std::string>*>(user)->push_back(std::move(line));
   return VK_FALSE;
 }

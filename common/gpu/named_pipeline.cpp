@@ -68,9 +68,23 @@ const Pipelines::Making& Pipelines::begin(const std::string& shader, const Const
     key += fmt::format(" {}={}", special.entries[i].constantID, special.values[i]);
   const auto found = made_.find(key);
   if (found != made_.end()) return found->second;
-  if (made_.size() >= kKept) std::erase_if(made_, [](const auto& made) { return made.second.get().use_count() == 1; });
   const auto make_it = [this, &stage_read, shader, special] { return make(shader, stage_read, special); };
   return made_.emplace(key, std::async(std::launch::async, make_it)).first->second;
+}
+
+std::shared_ptr<const NamedPipeline> Pipelines::get(const std::string& shader, const Constants& constants) {
+  const Making making = begin(shader, constants);
+  try {
+    return making.get();
+  } catch (...) {  // the next time it is tried again
+    made_.clear();
+    throw;
+  }
+}
+
+void Pipelines::drop_unused() {
+  if (made_.size() < kKept) return;
+  std::erase_if(made_, [](const auto& made) { return made.second.get().use_count() == 1; });
 }
 
 std::shared_ptr<const NamedPipeline> Pipelines::make(const std::string& shader, const Stage& read,

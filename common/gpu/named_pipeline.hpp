@@ -37,22 +37,20 @@ struct NamedPipeline {
 // The uniform block of this name is bound with an offset that changes from frame to frame.
 inline constexpr const char* kViewBlock = "View";
 
-// Every pipeline that was asked for, by shader and the constants it has: asked for again, it is the same one. When
-// there are many, those that nobody holds go; ask for a new one only while no frame is in flight.
+// Every pipeline that was asked for, by shader and the constants it has: asked for again, it is the same one.
 class Pipelines {
  public:
   explicit Pipelines(const Device& device) : device_(device) {}
   // shader: as in load_spirv. Throws Error on a constant the shader does not have or that has another type there,
   // saying which it has.
-  std::shared_ptr<const NamedPipeline> get(const std::string& shader, const Constants& constants) {
-    return begin(shader, constants).get();
-  }
+  std::shared_ptr<const NamedPipeline> get(const std::string& shader, const Constants& constants);
   // Begins to make one on another thread, if it is not there: several that are begun before the first is asked for are
   // made beside each other.
   using Making = std::shared_future<std::shared_ptr<const NamedPipeline>>;
   const Making& begin(const std::string& shader, const Constants& constants);
   const ShaderInterface& interface_of(const std::string& shader);
-  void forget();  // shaders were compiled anew
+  void forget();       // shaders were compiled anew
+  void drop_unused();  // those that nobody holds, if there are many; while no frame is in flight
   size_t count() const { return made_.size(); }
 
  private:

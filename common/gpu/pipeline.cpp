@@ -82,7 +82,8 @@ ComputePipeline create_compute_pipeline(const Device& device, const std::string&
                                          .stage = stage_of(VK_SHADER_STAGE_COMPUTE_BIT, module, special),
                                          .layout = pipeline.layout};
   VkPipeline handle = VK_NULL_HANDLE;
-  check(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &handle), "vkCreateComputePipelines");
+  check(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &handle),
+        ("vkCreateComputePipelines of " + name).c_str());
   pipeline.handle = PipelineHandle(device, handle);
   device.set_name(VK_OBJECT_TYPE_PIPELINE, handle, name);
   return pipeline;

@@ -31,7 +31,8 @@ fs::path source_directory() {
 std::vector<uint32_t> load_spirv(const std::string& name) {
   const fs::path path = shader_directory() / (name + ".spv");
   std::ifstream file(path, std::ios::binary);
-  if (!file) fail("shader {}: cannot be read; build the chapter first (./welkin run builds it)", path.string());
+  if (!file || fs::is_directory(path))
+    fail("shader {}: cannot be read; build the chapter first (./welkin run builds it)", path.string());
   const std::vector<char> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   std::vector<uint32_t> words(bytes.size() / 4);
   std::memcpy(words.data(), bytes.data(), 4 * words.size());

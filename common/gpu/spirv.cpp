@@ -2,8 +2,11 @@
 #include "common/gpu/spirv.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <map>
+#include <set>
 #include <spirv/unified1/spirv.hpp>
+#include <stdexcept>
 
 namespace welkin::gpu {
 namespace {
@@ -33,7 +36,10 @@ struct Module {
   }
 };
 
-std::string text(const uint32_t* words) { return reinterpret_cast<const char*>(words); }
+std::string text(std::span<const uint32_t> words) {
+  const char* characters = reinterpret_cast<const char*>(words.data());
+  return {characters, strnlen(characters, words.size_bytes())};
+}
 
 VkShaderStageFlagBits stage_of(uint32_t model) {
   return model == spv::ExecutionModelVertex     ? VK_SHADER_STAGE_VERTEX_BIT
@@ -41,19 +47,20 @@ VkShaderStageFlagBits stage_of(uint32_t model) {
                                                 : VK_SHADER_STAGE_COMPUTE_BIT;
 }
 
-void take(Module& module, spv::Op op, std::span<const uint32_t> w) {
+// Operands are asked for with at(): those of a damaged file need not be there.
+void take(Module& module, spv::Op op, const std::vector<uint32_t>& w) {
   switch (op) {
-    case spv::OpEntryPoint: module.stage = stage_of(w[0]); break;
-    case spv::OpName: module.names[w[0]] = text(&w[1]); break;
-    case spv::OpDecorate: module.decorations[{w[0], kItself}][w[1]] = w.size() > 2 ? w[2] : 1; break;
-    case spv::OpMemberDecorate: module.decorations[{w[0], w[1]}][w[2]] = w.size() > 3 ? w[3] : 1; break;
-    case spv::OpVariable: module.variables.push_back({op, {w.begin(), w.end()}}); break;
+    case spv::OpEntryPoint: module.stage = stage_of(w.at(0)); break;
+    case spv::OpName: module.names[w.at(0)] = text(std::span(w).subspan(w.empty() ? 0 : 1)); break;
+    case spv::OpDecorate: module.decorations[{w.at(0), kItself}][w.at(1)] = w.size() > 2 ? w.at(2) : 1; break;
+    case spv::OpMemberDecorate: module.decorations[{w.at(0), w.at(1)}][w.at(2)] = w.size() > 3 ? w.at(3) : 1; break;
+    case spv::OpVariable: module.variables.push_back({op, w}); break;
     case spv::OpConstant:
     case spv::OpSpecConstant:
     case spv::OpSpecConstantTrue:
-    case spv::OpSpecConstantFalse: module.types[w[1]] = {op, {w.begin(), w.end()}}; break;
+    case spv::OpSpecConstantFalse: module.types[w.at(1)] = {op, w}; break;
     default:
-      if (op >= spv::OpTypeVoid && op <= spv::OpTypePointer) module.types[w[0]] = {op, {w.begin(), w.end()}};
+      if (op >= spv::OpTypeVoid && op <= spv::OpTypePointer) module.types[w.at(0)] = {op, w};
   }
 }
 
@@ -62,16 +69,16 @@ uint32_t size_of(const Module& module, uint32_t type) {
   const Instruction& t = module.types.at(type);
   switch (t.op) {
     case spv::OpTypeInt:
-    case spv::OpTypeFloat: return t.words[1] / 8;
-    case spv::OpTypeVector: return size_of(module, t.words[1]) * t.words[2];
-    case spv::OpTypeMatrix: return 16 * t.words[2];
+    case spv::OpTypeFloat: return t.words.at(1) / 8;
+    case spv::OpTypeVector: return size_of(module, t.words.at(1)) * t.words.at(2);
+    case spv::OpTypeMatrix: return 16 * t.words.at(2);
     case spv::OpTypeArray:
-      return module.decoration(type, spv::DecorationArrayStride) * module.types.at(t.words[2]).words[2];
+      return module.decoration(type, spv::DecorationArrayStride) * module.types.at(t.words.at(2)).words.at(2);
     case spv::OpTypeStruct: {
       uint32_t end = 0;
       for (uint32_t member = 0; member + 1 < t.words.size(); ++member)
-        end = std::max(end,
-                       module.decoration(type, spv::DecorationOffset, member) + size_of(module, t.words[member + 1]));
+        end = std::max(
+            end, module.decoration(type, spv::DecorationOffset, member) + size_of(module, t.words.at(member + 1)));
       return end;
     }
     default: return 0;
@@ -117,11 +124,11 @@ ShaderBinding binding_of(const Module& module, uint32_t id, uint32_t type, uint3
   }
   binding.name = module.name(id);
   const bool sampled = t.op == spv::OpTypeSampledImage;
-  const Instruction& image = sampled ? module.types.at(t.words[1]) : t;
+  const Instruction& image = sampled ? module.types.at(t.words.at(1)) : t;
   binding.type = sampled ? VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER : VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
-  binding.volume = image.words[2] == spv::Dim3D;
+  binding.volume = image.words.at(2) == spv::Dim3D;
   if (sampled) return binding;
-  binding.format = format_of(image.words[7]);
+  binding.format = format_of(image.words.at(7));
   binding.reads = !module.decorated(id, spv::DecorationNonReadable);
   binding.writes = !module.decorated(id, spv::DecorationNonWritable);
   return binding;
@@ -129,18 +136,27 @@ ShaderBinding binding_of(const Module& module, uint32_t id, uint32_t type, uint3
 
 }  // namespace
 
-ShaderInterface reflect(std::span<const uint32_t> words, const std::string& shader) {
+ShaderInterface reflect(std::span<const uint32_t> words, const std::string& shader) try {
   Module module;
+  std::set<uint32_t> functions, called;
+  spv::Op op = spv::OpNop;
   for (size_t at = 5; at < words.size();) {  // after the header
     const uint32_t count = words[at] >> 16;
     if (count == 0 || at + count > words.size()) fail("shader {}: its SPIR-V is cut short; build it again", shader);
-    take(module, static_cast<spv::Op>(words[at] & 0xffff), words.subspan(at + 1, count - 1));
+    op = static_cast<spv::Op>(words[at] & 0xffff);
+    const std::vector<uint32_t> operands{words.begin() + at + 1, words.begin() + at + count};
+    if (op == spv::OpFunction) functions.insert(operands.at(1));
+    if (op == spv::OpFunctionCall) called.insert(operands.at(2));
+    if (op == spv::OpEntryPoint) called.insert(operands.at(1));
+    take(module, op, operands);
     at += count;
   }
+  if (op != spv::OpFunctionEnd || !std::ranges::includes(functions, called))
+    fail("shader {}: its SPIR-V is cut short; build it again", shader);
   ShaderInterface result{.stage = module.stage};
   for (const Instruction& variable : module.variables) {
-    const uint32_t id = variable.words[1], storage_class = variable.words[2];
-    const uint32_t type = module.types.at(variable.words[0]).words[2];  // of what the pointer points to
+    const uint32_t id = variable.words.at(1), storage_class = variable.words.at(2);
+    const uint32_t type = module.types.at(variable.words.at(0)).words.at(2);  // of what the pointer points to
     if (storage_class == spv::StorageClassPushConstant) result.push_constant_bytes = size_of(module, type);
     if (!module.decorated(id, spv::DecorationBinding)) continue;
     if (module.decoration(id, spv::DecorationDescriptorSet) != 0)
@@ -149,7 +165,8 @@ ShaderInterface reflect(std::span<const uint32_t> words, const std::string& shad
   }
   for (const auto& [id, constant] : module.types) {
     if (!module.decorated(id, spv::DecorationSpecId)) continue;
-    const bool real = constant.op == spv::OpSpecConstant && module.types.at(constant.words[0]).op == spv::OpTypeFloat;
+    const bool real =
+        constant.op == spv::OpSpecConstant && module.types.at(constant.words.at(0)).op == spv::OpTypeFloat;
     const bool boolean = constant.op != spv::OpSpecConstant;
     result.constants.push_back({module.name(id), module.decoration(id, spv::DecorationSpecId),
                                 boolean ? ShaderConstant::Type::boolean
@@ -157,6 +174,8 @@ ShaderInterface reflect(std::span<const uint32_t> words, const std::string& shad
                                         : ShaderConstant::Type::integer});
   }
   return result;
+} catch (const std::out_of_range&) {
+  fail("shader {}: its SPIR-V is damaged; build it again", shader);
 }
 
 }  // namespace welkin::gpu

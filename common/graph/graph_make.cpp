@@ -185,6 +185,7 @@ void Graph::make_all(VkExtent2D picture_size) {
     for (const Step& step : counted->pass.steps)
       if (!step.shader.empty()) pipelines_->begin(step.shader, step.constants);
   for (Counted* counted : order_) make(*counted);
+  pipelines_->drop_unused();
   image_barriers_.reserve(barriers);
   buffer_barriers_.reserve(barriers);
 }

@@ -16,6 +16,7 @@ namespace {
 
 constexpr size_t kMaxFile = size_t{1} << 30;
 constexpr size_t kMaxText = size_t{1} << 20;
+constexpr int kDeflateLevel = 4;        // half the time of the usual 6 for a tenth more bytes
 constexpr size_t kDeflateRatio = 1032;  // deflate's best: 258 bytes from 2 bits
 
 // A file in memory, its header read, each of its chunks whole. What follows IEND is ignored, as decoders do.
@@ -82,8 +83,8 @@ unsigned deflate_by_zlib(unsigned char** out, size_t* out_size, const unsigned c
                          const LodePNGCompressSettings*) {
   uLongf size = compressBound(static_cast<uLong>(in_size));
   *out = static_cast<unsigned char*>(std::malloc(size));
-  if (*out == nullptr) return 83;                                                  // lodepng's number for no memory
-  compress2(*out, &size, in, static_cast<uLong>(in_size), Z_DEFAULT_COMPRESSION);  // the bound makes it succeed
+  if (*out == nullptr) return 83;                                          // lodepng's number for no memory
+  compress2(*out, &size, in, static_cast<uLong>(in_size), kDeflateLevel);  // the bound makes it succeed
   *out_size = size;
   return 0;
 }

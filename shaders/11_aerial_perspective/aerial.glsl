@@ -37,6 +37,7 @@ AirSegment append_segment(MethodAir method, AirRay ray, ScatteringTowardsEye sca
                           int samples) {
   Atmosphere air = method.air;
   AirSegment segment = before;
+  // [air_pieces]
   float dt = (t_b - t_a) / float(samples);
   for (int i = 0; i < samples; i++) {
     float offset = samples == 1 ? 0.5 : (i % 2 == 0 ? 0.42264973081037424 : 0.57735026918962576);
@@ -58,6 +59,7 @@ AirSegment append_segment(MethodAir method, AirRay ray, ScatteringTowardsEye sca
     }
   }
   return segment;
+  // [/air_pieces]
 }
 // [/air_segment]
 
@@ -74,6 +76,7 @@ float slices_before(float t_km, float slices, float farthest_km, float power) {
 // the next, but what the air would be if it were homogeneous up to there,
 //   extinction = tau / d,   in_scattering = L / (1 - T),   so that   T = exp(-extinction d),   L = in_scattering (1 - T).
 // Both hardly change with d, and tend to the air's own at the eye. 1 - T is tau phi(tau), phi the mean transmittance.
+// [froxel_kept]
 struct Froxel {
   vec3 in_scattering;
   vec3 extinction;  // per km
@@ -97,6 +100,7 @@ RayLight light_before(Froxel froxel, float d_km) {
   light.transmittance = exp(tau * -1.0);
   return light;
 }
+// [/froxel_kept]
 // [/froxel]
 
 // [march_to]

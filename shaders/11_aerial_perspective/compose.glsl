@@ -52,6 +52,7 @@ RayLight air_before(Atmosphere air, vec2 place, vec3 view, float t_km) {
 }
 
 // [compose]
+// [surface_seen]
 // A surface, lit by sun and sky, through the air before it.
 vec3 surface_seen(Atmosphere air, Surface surface, vec3 view, vec3 sun, float altitude, vec2 place) {
   const float mu_sun = dot(sun, surface.up);
@@ -63,6 +64,7 @@ vec3 surface_seen(Atmosphere air, Surface surface, vec3 view, vec3 sun, float al
   const RayLight before = air_before(air, place, view, surface.t_km);
   return before.radiance + before.transmittance * lit;
 }
+// [/surface_seen]
 
 int next_layer(vec3 shares, int layer) {
   if (layer == 0 && shares.x <= 0.0) layer = 1;

@@ -43,6 +43,7 @@ void main() {
   const ClippedRay in_air = clipped_ray(view, frame.camera.altitude_km);
   const ScatteringTowardsEye scattering = scattering_along(air, view, frame.camera.sun);
   AirSegment before = no_air();  // all slices of the rounds before
+  // [froxel_rounds]
   for (int round = 0; round * THREADS < SLICES; ++round) {
     const int k = min(round * THREADS + part, SLICES - 1);
     const bool own = round * THREADS + part < SLICES && texel.y < count.y;
@@ -68,5 +69,6 @@ void main() {
     }
     if (own) store(ivec3(texel, k), segment, t_b, air.solar_irradiance);
   }
+  // [/froxel_rounds]
 }
 // [/froxels]

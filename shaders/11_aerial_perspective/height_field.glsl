@@ -112,6 +112,7 @@ Hit first_hit(HeightField field, vec3 start_km, vec3 direction, float altitude_k
     }
     vec2 grid = grid_at(field, place);
     vec2 rate = vec2(speed.x, -speed.y) / patch_km;
+    // [pass_or_split]
     ivec2 node = ivec2(int(grid.x) >> level, int(grid.y) >> level);
     float dt = steps_to_border(field, grid, rate, node, level);
     float altitude_end = altitude_along(radius, altitude_km, mu, t + dt);
@@ -132,6 +133,7 @@ Hit first_hit(HeightField field, vec3 start_km, vec3 direction, float altitude_k
         hit.approach = -(over.y + 2.0 * over.z * s) / max(dt, 1.0e-9);
         return hit;
       }
+      // [/pass_or_split]
       // The nearest it comes to the patch, if it rises from it again: an edge, half a pixel of it at a clearance of 0.
       float near = over.z > 0.0 ? clamp(-0.5 * over.y / over.z, 0.0, 1.0) : (over.y + over.z < 0.0 ? 1.0 : 0.0);
       float height = over.x + near * (over.y + near * over.z);

@@ -6,6 +6,7 @@
 #define WELKIN_TERRAIN_GLSL
 
 // [on_planet]
+// [point_above]
 // The point at altitude h above a place. z of the sphere there, sqrt(R^2 - d^2) - R, in the form that does not cancel.
 vec3 on_planet(float ground_radius_km, vec2 place_km, float altitude_km) {
   float d2 = min(dot(place_km, place_km), ground_radius_km * ground_radius_km);
@@ -13,6 +14,7 @@ vec3 on_planet(float ground_radius_km, vec2 place_km, float altitude_km) {
   float scale = altitude_km / ground_radius_km;
   return vec3(place_km.x * (1.0 + scale), place_km.y * (1.0 + scale), upright * scale - d2 / (ground_radius_km + upright));
 }
+// [/point_above]
 
 // Altitude of a point, (|p - c|^2 - R^2) / (|p - c| + R).
 float altitude_of(float ground_radius_km, vec3 point_km) {

@@ -288,13 +288,17 @@ class Window(WelkinCase):
         picture = self.saved()
         done = self.run_chapter("05", "--headless", "--size", "64x36", "--scene", picture)
         self.assertIn("scene sunset", done.stdout)
-        press(257, 17, (150, 17))  # its right edge, in the title: no tooltip there
-        time.sleep(2.0)
-        narrow = rgb(self.screen("narrow.png"))
+        press(257, 24, (150, 24))  # its right edge, below its corner and in the title: no tooltip there
+        view = rgb(read_png(picture))
+        def parts(of):
+            return [row[3 * 160:] for row in of], [row[:3 * 140] for row in of]
         self.key("h")
-        right, left = [row[3 * 160:] for row in narrow], [row[:3 * 140] for row in narrow]
-        self.assertTrue(self.in_time(lambda: [row[:3 * 140] for row in rgb(self.screen("free.png"))] != left), "there was the panel")
-        self.assertTrue([row[3 * 160:] for row in rgb(self.screen("free.png"))] == right, "right of it is the view")
+        self.assertTrue(self.in_time(lambda: rgb(self.screen("free.png")) == view), "without the panel there is the view")
+        self.key("h")
+        def narrow():
+            right, left = parts(rgb(self.screen("narrow.png")))
+            return right == parts(view)[0] and left != parts(view)[1]
+        self.assertTrue(self.in_time(narrow), "right of the panel is the view")
         self.quit()
 
     def test_times_are_those_of_the_passes(self):

@@ -16,6 +16,7 @@ import errno
 import os
 import runpy
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -24,6 +25,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 BUILD = Path(os.environ.get("WELKIN_BUILD", ROOT / "build")).resolve()
+GLSLANG = os.environ.get("GLSLANG_VALIDATOR", "glslangValidator")
 
 
 def programs():
@@ -60,7 +62,7 @@ class Mutated:
                     raise
                 continue  # no reader
             fresh = Path(f"{target}.new")
-            done = subprocess.run([os.environ.get("GLSLANG_VALIDATOR", "glslangValidator"), "-V", "--target-env", "vulkan1.2", "--quiet",
+            done = subprocess.run([GLSLANG, "-V", "--target-env", "vulkan1.2", "--quiet",
                                    f"-I{self.shaders}", "-o", fresh, source], capture_output=True, text=True)
             if done.returncode:
                 self.message = done.stdout + done.stderr
@@ -78,11 +80,15 @@ def run_test(name, directory, mutated):
         process = subprocess.Popen([BUILD / "bin/gpu_tests", name, "--abort", "-w", "NoTests"], stdout=output, stderr=subprocess.STDOUT,
                                    env={**os.environ, "WELKIN_SHADERS": str(directory)})
         end = time.monotonic() + 120
-        while process.poll() is None:
-            mutated.serve()
-            time.sleep(0.004)
-            if time.monotonic() > end:
-                process.kill()
+        try:
+            while process.poll() is None:
+                mutated.serve()
+                time.sleep(0.004)
+                if time.monotonic() > end:
+                    process.kill()
+        finally:  # it may wait for a pipe that nobody will write
+            process.kill()
+            process.wait()
         output.seek(0)
         text = output.read()
     if process.returncode == 77:
@@ -97,7 +103,12 @@ def main():
     parser.add_argument("--tested", action="store_true", help="take the tests to pass without a mutant")
     parser.add_argument("chapter", help="two digits")
     parser.add_argument("names", nargs="*", help="only mutants whose name contains one of these")
-    arguments = parser.parse_args()
+    arguments = parser.parse_intermixed_args()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # as any exit: what was begun is cleaned up
+    if not (BUILD / "bin" / "gpu_tests").exists():
+        parser.error(f"no built tests in {BUILD}; see ./welkin test, or set WELKIN_BUILD")
+    if shutil.which(GLSLANG) is None:
+        parser.error(f"no shader compiler '{GLSLANG}'")
     lists = Path(__file__).with_suffix("")
     if not (lists / f"{arguments.chapter}.py").exists():
         parser.error(f"no mutants of chapter {arguments.chapter}; there are: {', '.join(sorted(p.stem for p in lists.glob('*.py')))}")
