@@ -97,8 +97,8 @@ std::vector<std::string> names_of(const std::vector<gpu::PassTime>& times) {
 void survey_media(Shown& shown, Findings& findings) {
   const StandardView view{"noon", "horizon"};
   Renderer& whole = shown.show(view, kSurveySize);
-  draw_frame(shown.other.session, whole,
-             1);  // frame 0 also ran passes that run only on a change; frame 1 is the steady state
+  // Frame 0 also ran passes that run only on a change; frame 1 is the steady state.
+  draw_frame(shown.other.session, whole, 1);
   const Image picture = whole.picture();
   const std::vector<std::string> passes = names_of(whole.pass_times());
   const uint64_t bytes = shown.other.session.device.allocated_bytes();
@@ -109,14 +109,12 @@ void survey_media(Shown& shown, Findings& findings) {
     std::erase_if(shown.other.scene.media, [&](const Medium& other) { return other.kind == medium.kind; });
     shown.program->rebuild();
     for (const uint32_t frame : {0u, 1u}) draw_frame(shown.other.session, whole, frame);
-    const bool no_more_bytes = shown.other.session.device.allocated_bytes() <= bytes,
-               same_passes = names_of(whole.pass_times()) == passes,
-               seen = dark || !std::ranges::equal(whole.picture().pixels, picture.pixels);
-    findings.add(fmt::format("{} without {}", name_of(view, '/'), medium.kind), !no_more_bytes ? "holds more bytes"
-                                                                                : !same_passes ? "has other passes"
-                                                                                : !seen
-                                                                                    ? "is the same picture"
-                                                                                    : finite_fault(whole.picture()));
+    const Image without = whole.picture();
+    std::string fault = finite_fault(without);
+    if (!dark && std::ranges::equal(without.pixels, picture.pixels)) fault = "is the same picture";
+    if (names_of(whole.pass_times()) != passes) fault = "has other passes";
+    if (shown.other.session.device.allocated_bytes() > bytes) fault = "holds more bytes";
+    findings.add(fmt::format("{} without {}", name_of(view, '/'), medium.kind), fault);
   }
 }
 
