@@ -88,10 +88,8 @@ std::vector<Knob> froxel_knobs() {
 // [/knobs]
 
 AerialPush aerial_push(const app::Context& context) {
-  const Terrain& terrain = *context.scene.terrain;
-  const double signs = terrain.signs_azimuth_deg ? glm::radians(*terrain.signs_azimuth_deg) : -1e3;
-  return {static_cast<float>(terrain.extent_km), static_cast<float>(context.settings.number("froxels.distance_km")),
-          static_cast<float>(signs)};
+  return {static_cast<float>(context.scene.terrain->extent_km),
+          static_cast<float>(context.settings.number("froxels.distance_km"))};
 }
 
 // [inputs]

@@ -18,7 +18,7 @@ struct Froxels {
 
 // Push constants of block.glsl.
 struct AerialPush {
-  float extent_km, farthest_km, signs_azimuth, unused = 0.0f;
+  float extent_km, farthest_km;
 };
 AerialPush aerial_push(const app::Context& context);
 

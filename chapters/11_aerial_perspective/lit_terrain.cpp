@@ -1,6 +1,8 @@
 // The pass "compose". See lit_terrain.hpp.
 #include "chapters/11_aerial_perspective/lit_terrain.hpp"
 
+#include "chapters/11_aerial_perspective/signs.hpp"
+
 namespace welkin {
 
 // [compose]
@@ -8,9 +10,7 @@ app::Effect lit_terrain() {
   app::Effect effect{.name = "lit terrain", .chapter = 11};
   effect.wanted = [](const Scene& scene, const Settings&) -> app::Wanted {
     if (!scene.terrain) return {false, "no [terrain] in scene: the sky is the picture"};
-    return {true, scene.terrain->signs_azimuth_deg
-                      ? fmt::format("terrain, and signs in direction {}", *scene.terrain->signs_azimuth_deg)
-                      : "terrain, no signs"};
+    return {true, "[terrain] in scene"};
   };
   // Knobs of the froxels that the march per pixel is compiled with, too: without froxels nothing else tells of them.
   effect.key = [](const Scene&, const Settings& settings) {
@@ -36,6 +36,7 @@ app::Effect lit_terrain() {
                                                {"cover_map", maps.cover},
                                                {"sky", sky_picture},
                                                {"target", picture}});
+    add_signs(step, board, maps.cover);
     if (froxels != nullptr)
       step.bindings.insert(step.bindings.end(), {{"froxel_in_scattering", froxels->in_scattering},
                                                  {"froxel_extinction", froxels->extinction}});

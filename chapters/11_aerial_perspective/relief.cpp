@@ -21,26 +21,6 @@ struct ShadowPush {
   glm::vec4 sun;
 };
 
-// Makes a map on the device and fills it, once, before any frame.
-template <typename T>
-gpu::Image upload(const gpu::Device& device, const char* name, VkFormat format, int width, int height,
-                  const std::vector<T>& texels) {
-  const VkExtent2D extent{static_cast<uint32_t>(width), static_cast<uint32_t>(height)};
-  gpu::Image image = gpu::create_image(device, name, extent, format, kMapUsage);
-  const gpu::Buffer staging = gpu::create_buffer(device, "staging", texels.size() * sizeof(T),
-                                                 VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Where::upload);
-  std::memcpy(staging.mapped, texels.data(), staging.bytes);
-  const gpu::CommandPool pool = gpu::create_command_pool(device);
-  gpu::run_once(device, pool, [&](VkCommandBuffer commands) {
-    gpu::image_barrier(commands, image.handle, {}, gpu::kTransferWrite);
-    const VkBufferImageCopy copy{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
-                                 .imageExtent = {extent.width, extent.height, 1}};
-    vkCmdCopyBufferToImage(commands, staging.handle, image.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
-    gpu::image_barrier(commands, image.handle, gpu::kTransferWrite, gpu::kSampledRead);
-  });
-  return image;
-}
-
 // Shares as halves: a driver may filter 8-bit numbers to 8 bits, and a step of 1/255 of snow among grass is 3 % of its
 // light.
 std::vector<uint64_t> halves(const std::vector<std::array<uint8_t, 4>>& cover) {
@@ -138,12 +118,31 @@ void ViewChange::note(const app::Frame& frame) {
   position_km_ = frame.position_km, fresh_ = false;
 }
 
+gpu::Image uploaded_map(const gpu::Device& device, const char* name, VkFormat format, VkExtent2D size,
+                        std::span<const std::byte> texels) {
+  gpu::Image image = gpu::create_image(device, name, size, format, kMapUsage);
+  const gpu::Buffer staging =
+      gpu::create_buffer(device, "staging", texels.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Where::upload);
+  std::memcpy(staging.mapped, texels.data(), texels.size());
+  const gpu::CommandPool pool = gpu::create_command_pool(device);
+  gpu::run_once(device, pool, [&](VkCommandBuffer commands) {
+    gpu::image_barrier(commands, image.handle, {}, gpu::kTransferWrite);
+    const VkBufferImageCopy copy{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                                 .imageExtent = {size.width, size.height, 1}};
+    vkCmdCopyBufferToImage(commands, staging.handle, image.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
+    gpu::image_barrier(commands, image.handle, gpu::kTransferWrite, gpu::kSampledRead);
+  });
+  return image;
+}
+
 // [maps]
 // The maps on the device; of the map itself only heights stay, for where the camera stands.
 static TerrainMaps upload_maps(app::Builder& builder) {
   const app::Context& context = builder.context;
   const auto add = [&](const char* name, VkFormat format, int width, int height, const auto& texels) {
-    return builder.graph.add_filled(name, upload(context.device, name, format, width, height, texels));
+    const VkExtent2D size{static_cast<uint32_t>(width), static_cast<uint32_t>(height)};
+    return builder.graph.add_filled(name,
+                                    uploaded_map(context.device, name, format, size, std::as_bytes(std::span(texels))));
   };
   TerrainMap map = make_terrain_map(*context.scene.terrain);
   check_fits_planet(*context.scene.terrain, context.scene.planet.ground_radius_km);

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "chapters/11_aerial_perspective/terrain_map.hpp"
@@ -34,6 +35,10 @@ struct TerrainShadows {
 app::Effect terrain();
 // Pass "terrain shadows": when the sun has moved.
 app::Effect terrain_shadows();
+
+// Makes an image that passes sample and fills it with rows of texels, once, before any frame.
+gpu::Image uploaded_map(const gpu::Device& device, const char* name, VkFormat format, VkExtent2D size,
+                        std::span<const std::byte> texels);
 
 // Whether a frame is seen from elsewhere than one noted before; time and frame number do not count.
 class ViewChange {

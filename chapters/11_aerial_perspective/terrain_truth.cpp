@@ -5,6 +5,7 @@
 
 #include "chapters/07_ground_truth/ground_truth.hpp"
 #include "chapters/11_aerial_perspective/relief.hpp"
+#include "chapters/11_aerial_perspective/signs.hpp"
 
 namespace welkin {
 namespace {
@@ -24,19 +25,14 @@ app::Effect first_surfaces() {
   effect.wanted = [](const Scene& scene, const Settings&) -> app::Wanted {
     return {scene.terrain.has_value(), "[terrain]"};
   };
-  effect.key = [](const Scene& scene, const Settings&) {
-    return fmt::format("{}", scene.terrain->signs_azimuth_deg.value_or(-1.0));
-  };
   effect.declare = [](app::Builder& builder, app::Board& board) {
     const app::Context& context = builder.context;
     const TerrainMaps& maps = board.get<TerrainMaps>("terrain");
     const SurfaceImages images{builder.graph.add_image("normals and distances"), builder.graph.add_image("albedos")};
     board.offer(images);
-    const std::optional<double>& signs = context.scene.terrain->signs_azimuth_deg;
     graph::Pass pass{.name = "surfaces", .changed = [](const app::Frame&) { return true; }};  // the albedo is a knob
     pass.steps.push_back({.shader = "11_aerial_perspective/surfaces.comp",
-                          .constants = {{"SIGNS_AZIMUTH", static_cast<float>(signs ? glm::radians(*signs) : -1e3)},
-                                        {"EXTENT_KM", static_cast<float>(context.scene.terrain->extent_km)},
+                          .constants = {{"EXTENT_KM", static_cast<float>(context.scene.terrain->extent_km)},
                                         {"RADIUS_KM", static_cast<float>(context.scene.planet.ground_radius_km)},
                                         {"HAS_DETAIL", context.settings.choice("terrain.detail") == "on"}},
                           .bindings = {{"terrain_distance", maps.distance},
@@ -48,6 +44,7 @@ app::Effect first_surfaces() {
                             r.push(SurfacesPush{{context.scene.planet.ground_albedo, 0.0}})
                                 .dispatch_over(r.graph.image(images.normals).size);
                           }});
+    add_signs(pass.steps.front(), board, maps.cover);
     builder.graph.add(std::move(pass));
   };
   return effect;
@@ -90,7 +87,7 @@ app::Truth terrain_truth() {
   truth.make = [](const app::Context& context) -> std::unique_ptr<app::Program> {
     if (!context.scene.terrain) return std::make_unique<GroundTruth>(context);
     return std::make_unique<app::Composition>(
-        context, std::vector<app::Effect>{terrain(), first_surfaces(), traced_terrain()}, probe_paths);
+        context, std::vector<app::Effect>{terrain(), signs(), first_surfaces(), traced_terrain()}, probe_paths);
   };
   return truth;
 }

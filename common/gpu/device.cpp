@@ -7,6 +7,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "common/gpu/named_pipeline.hpp"
+
 namespace welkin::gpu {
 namespace {
 
@@ -136,6 +138,7 @@ Device::Device(const Instance& instance, const Candidate& candidate, bool swapch
                                 .ppEnabledExtensionNames = &extension};
   check(vkCreateDevice(candidate.handle, &info, nullptr, &device_), "vkCreateDevice");
   vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
+  pipelines_ = std::make_unique<Pipelines>(*this);
   vkGetPhysicalDeviceMemoryProperties(candidate.handle, &memory_);
   VkPhysicalDeviceProperties properties;
   vkGetPhysicalDeviceProperties(candidate.handle, &properties);
@@ -148,6 +151,7 @@ Device::Device(const Instance& instance, const Candidate& candidate, bool swapch
 
 Device::~Device() {
   vkDeviceWaitIdle(device_);  // at shutdown only: never in a frame
+  pipelines_.reset();
   vkDestroyDevice(device_, nullptr);
 }
 

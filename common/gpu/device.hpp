@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +10,8 @@
 #include "common/gpu/instance.hpp"
 
 namespace welkin::gpu {
+
+class Pipelines;
 
 // What is known of a physical device before it is used.
 struct Candidate {
@@ -53,6 +56,9 @@ class Device {
   // Gives a handle the name that validation messages and debuggers show. Does nothing without validation.
   void set_name(VkObjectType type, const void* handle, const std::string& name) const;
 
+  // The device's named pipelines: every graph asks here, so that programs of one process share what they have compiled.
+  Pipelines& pipelines() const { return *pipelines_; }
+
   // Live allocations by resource name, kept by Image and Buffer.
   std::vector<Allocation>& allocations() const { return allocations_; }
   uint64_t allocated_bytes() const;
@@ -68,6 +74,7 @@ class Device {
   VkPhysicalDeviceLimits limits_{};
   VkPhysicalDeviceMemoryProperties memory_{};
   PFN_vkSetDebugUtilsObjectNameEXT set_name_ = nullptr;
+  std::unique_ptr<Pipelines> pipelines_;
   mutable std::vector<Allocation> allocations_;
   mutable uint64_t allocation_count_ = 0;
 };

@@ -83,7 +83,7 @@ std::shared_ptr<const NamedPipeline> Pipelines::get(const std::string& shader, c
 }
 
 void Pipelines::drop_unused() {
-  if (made_.size() < kKept) return;
+  if (made_.size() < kept_) return;
   std::erase_if(made_, [](const auto& made) { return made.second.get().use_count() == 1; });
 }
 

@@ -37,10 +37,12 @@ struct NamedPipeline {
 // The uniform block of this name is bound with an offset that changes from frame to frame.
 inline constexpr const char* kViewBlock = "View";
 
-// Every pipeline that was asked for, by shader and the constants it has: asked for again, it is the same one.
+// Every pipeline that was asked for, by shader and the constants it has: asked for again, it is the same one. A device
+// has one of these.
 class Pipelines {
  public:
-  explicit Pipelines(const Device& device) : device_(device) {}
+  // kept: above this number those that nobody holds may go.
+  explicit Pipelines(const Device& device, size_t kept = 128) : device_(device), kept_(kept) {}
   // shader: as in load_spirv. Throws Error on a constant the shader does not have or that has another type there,
   // saying which it has.
   std::shared_ptr<const NamedPipeline> get(const std::string& shader, const Constants& constants);
@@ -62,8 +64,8 @@ class Pipelines {
   std::shared_ptr<const NamedPipeline> make(const std::string& shader, const Stage& read,
                                             const SpecializationMap& special) const;
 
-  static constexpr size_t kKept = 64;
   const Device& device_;
+  const size_t kept_;
   std::map<std::string, Stage> stages_;
   std::map<std::string, Making> made_;
 };

@@ -63,10 +63,7 @@ std::vector<Knob> knobs_of(const std::vector<Effect>& effects, int chapter) {
 }
 
 Composition::Composition(const Context& context, std::vector<Effect> effects, ProbeFunction probe)
-    : context_(context),
-      probe_(std::move(probe)),
-      pipelines_(context.device),
-      graph_(context.device, pipelines_, context.inject) {
+    : context_(context), probe_(std::move(probe)), graph_(context.device, context.inject) {
   const uint32_t alignment =
       std::max(static_cast<uint32_t>(context.device.limits().minUniformBufferOffsetAlignment), 1u);
   view_stride_ = (static_cast<uint32_t>(sizeof(ViewBlock)) + alignment - 1) / alignment * alignment;
@@ -175,7 +172,7 @@ void Composition::connect() {
 // [/connect]
 
 void Composition::reload() {
-  pipelines_.forget();
+  context_.device.pipelines().forget();
   for (State& state : states_) state.built = false;
   rebuild();
 }
@@ -250,11 +247,11 @@ std::string Composition::explain() const {
   std::string text = "effects:\n";
   for (uint32_t i = 0; i < states_.size(); ++i) {
     const State& state = states_[i];
-    const bool passes = graph_.has_pass(i) || state.adjust_camera;
+    const bool serves = graph_.serves(i) || state.adjust_camera;
     const std::string why = !state.wanted.why.empty() ? state.wanted.why
-                            : passes                  ? "what is shown needs it"
+                            : serves                  ? "what is shown needs it"
                                                       : "nothing that is shown needs it";
-    text += fmt::format("  {:<22} {:<4} {}\n", state.effect.name, passes ? "on" : "off", why);
+    text += fmt::format("  {:<22} {:<4} {}\n", state.effect.name, serves ? "on" : "off", why);
   }
   text += graph_.explain();
   for (const State& state : states_)

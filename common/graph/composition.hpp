@@ -29,7 +29,6 @@ class Composition : public Program {
   const gpu::Image* image(const std::string& name) const override;  // a resource's, its name with _ for blanks
 
   graph::Graph& graph() { return graph_; }
-  const gpu::Pipelines& pipelines() const { return pipelines_; }
   // What the effects offer, for tests and probes; nullptr: nobody does.
   template <typename T>
   const T* find() {
@@ -65,7 +64,6 @@ class Composition : public Program {
 
   const Context context_;
   ProbeFunction probe_;
-  gpu::Pipelines pipelines_;
   graph::Graph graph_;
   Board board_;
   std::vector<State> states_;

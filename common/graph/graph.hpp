@@ -117,7 +117,7 @@ class Graph {
  public:
   Graph() = default;  // for order and barriers alone: no step may have a shader
   // inject "missing-barrier": the fault the synchronization test plants, no barrier before a read.
-  Graph(const gpu::Device& device, gpu::Pipelines& pipelines, const std::string& inject = {});
+  explicit Graph(const gpu::Device& device, const std::string& inject = {});
 
   // What is added from now on belongs to this effect; remove() takes all of it out again. No frame is in flight.
   void set_owner(uint32_t owner) { owner_ = owner; }
@@ -170,7 +170,8 @@ class Graph {
   std::vector<std::string> resources(uint32_t owner) const;  // of one effect's that exist
   uint64_t bytes() const;                                    // of all that are its own
   uint64_t runs(const std::string& pass) const;              // 0 for a pass there is not
-  bool has_pass(uint32_t owner) const;                       // whether this effect has a pass that is needed
+  size_t pipelines() const;                                  // different ones that its steps are bound to
+  bool serves(uint32_t owner) const;                         // a pass that is needed is its own or reads what is
 
  private:
   struct State {                            // what happened to a mip last
@@ -249,7 +250,6 @@ class Graph {
   void record(const app::Frame& frame, uint32_t view_offset, Counted& counted);
 
   const gpu::Device* device_ = nullptr;
-  gpu::Pipelines* pipelines_ = nullptr;
   bool drops_barriers_ = false;
   uint32_t owner_ = 0;
   uint64_t frames_ = 0, versions_ = 0;

@@ -1,5 +1,6 @@
 // What the frame graph makes: resources, pipelines, descriptor sets; and what it says of itself. See graph.hpp.
 #include <algorithm>
+#include <set>
 
 #include "common/graph/graph.hpp"
 
@@ -33,8 +34,8 @@ gpu::Use use_of(const gpu::ShaderBinding& binding) {
 
 }  // namespace
 
-Graph::Graph(const gpu::Device& device, gpu::Pipelines& pipelines, const std::string& inject)
-    : device_(&device), pipelines_(&pipelines), drops_barriers_(inject == "missing-barrier") {}
+Graph::Graph(const gpu::Device& device, const std::string& inject)
+    : device_(&device), drops_barriers_(inject == "missing-barrier") {}
 
 Resource Graph::hold(Held held) {
   held.owner = owner_;
@@ -130,7 +131,7 @@ void Graph::reflect(Counted& counted) {
     };
     for (const Access& access : step.accesses) add(access.resource, access.use, access.mip, access.last_frame);
     if (step.shader.empty()) continue;
-    const std::vector<gpu::ShaderBinding>& wanted = pipelines_->interface_of(step.shader).bindings;
+    const std::vector<gpu::ShaderBinding>& wanted = device_->pipelines().interface_of(step.shader).bindings;
     std::vector<std::string> names;
     for (const gpu::ShaderBinding& binding : wanted) {
       names.push_back(binding.name);
@@ -183,9 +184,9 @@ void Graph::make_all(VkExtent2D picture_size) {
   }
   for (const Counted* counted : order_)
     for (const Step& step : counted->pass.steps)
-      if (!step.shader.empty()) pipelines_->begin(step.shader, step.constants);
+      if (!step.shader.empty()) device_->pipelines().begin(step.shader, step.constants);
   for (Counted* counted : order_) make(*counted);
-  pipelines_->drop_unused();
+  device_->pipelines().drop_unused();
   image_barriers_.reserve(barriers);
   buffer_barriers_.reserve(barriers);
 }
@@ -219,7 +220,7 @@ void Graph::make(Counted& counted) {
     const Step& step = counted.pass.steps[i];
     Made& made = counted.steps[i];
     if (step.shader.empty()) continue;
-    const auto pipeline = pipelines_->get(step.shader, step.constants);
+    const auto pipeline = device_->pipelines().get(step.shader, step.constants);
     made.alternates = std::any_of(step.bindings.begin(), step.bindings.end(),
                                   [&](const Binding& b) { return held_of(b.resource).kind == Kind::history; });
     const bool other_layout = made.pipeline != pipeline;
@@ -338,8 +339,21 @@ uint64_t Graph::runs(const std::string& pass) const {
   return 0;
 }
 
-bool Graph::has_pass(uint32_t owner) const {
-  return std::any_of(order_.begin(), order_.end(), [&](const Counted* counted) { return counted->owner == owner; });
+size_t Graph::pipelines() const {
+  std::set<const gpu::NamedPipeline*> bound;
+  for (const Counted* counted : order_)
+    for (const Made& made : counted->steps)
+      if (made.pipeline) bound.insert(made.pipeline.get());
+  return bound.size();
+}
+
+bool Graph::serves(uint32_t owner) const {
+  const auto touches_its = [owner](const Touch& touch) { return touch.held->owner == owner; };
+  return std::any_of(order_.begin(), order_.end(), [&](const Counted* counted) {
+    return counted->owner == owner || std::any_of(counted->steps.begin(), counted->steps.end(), [&](const Made& made) {
+             return std::any_of(made.touches.begin(), made.touches.end(), touches_its);
+           });
+  });
 }
 
 std::string describe(const gpu::Use& use) {

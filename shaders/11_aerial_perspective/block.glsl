@@ -17,10 +17,8 @@ layout(constant_id = 21) const float POWER = 2.0;
 layout(binding = 1) uniform sampler2D multiple_scattering_table;
 layout(binding = 2) uniform sampler2D shadow_map;
 layout(push_constant) uniform Push {
-  float extent_km;      // of the map
-  float farthest_km;    // froxel
-  float signs_azimuth;  // of the row of signs, rad, below -100 without
-  float unused;
+  float extent_km;    // of the map
+  float farthest_km;  // froxel
 };
 
 vec3 read_multiple_scattering_table(vec2 uv) { return textureLod(multiple_scattering_table, uv, 0.0).rgb; }

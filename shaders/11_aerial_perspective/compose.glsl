@@ -6,6 +6,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 22) const int MARCH_SLICES = 64;
 layout(constant_id = 23) const bool HAS_EDGES = true;
 layout(constant_id = 24) const bool HAS_DETAIL = true;
+layout(constant_id = 25) const bool HAS_SIGNS = true;
 
 #if FROXELS
 layout(binding = 3) uniform sampler3D froxel_in_scattering;
@@ -16,9 +17,9 @@ layout(binding = 6) uniform sampler2D slope_map;
 layout(binding = 7) uniform sampler2D cover_map;
 layout(binding = 8, rgba32f) uniform readonly image2D sky;
 layout(binding = 9, rgba32f) uniform writeonly image2D target;
+layout(binding = 10) uniform sampler2D sign_boards;
 
-vec2 slope_at(vec2 uv) { return textureLod(slope_map, uv, 0.0).rg; }
-vec4 cover_at(vec2 uv) { return textureLod(cover_map, uv, 0.0); }
+#include "11_aerial_perspective/surface_maps.glsl"
 #include "11_aerial_perspective/surface.glsl"
 
 #if FROXELS
@@ -86,7 +87,7 @@ void main() {
   vec3 radiance = terrain.x > 0.0 ? vec3(0.0) : imageLoad(sky, pixel).rgb;
   SignSeen sign;
   sign.share = 0.0;
-  if (signs_azimuth > -100.0) sign = sign_before(air.ground_radius_km, frame.position_km, direction, terrain.x > 0.0 ? terrain.x : 1.0e9, signs_azimuth, pixel_rad);
+  if (HAS_SIGNS) sign = sign_before(air.ground_radius_km, frame.position_km, direction, terrain.x > 0.0 ? terrain.x : 1.0e9, pixel_rad);
   const vec3 shares = vec3(terrain.x > 0.0 ? 1.0 : 0.0, HAS_EDGES ? terrain.z : 0.0, sign.share);
   // Nearly all pixels have one of the three at most: a loop over those that are there.
   for (int layer = next_layer(shares, 0); layer < 3; layer = next_layer(shares, layer + 1)) {

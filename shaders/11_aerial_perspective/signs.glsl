@@ -5,15 +5,13 @@
 #ifndef WELKIN_SIGNS_GLSL
 #define WELKIN_SIGNS_GLSL
 
-#include "11_aerial_perspective/terrain.glsl"
-
-const int kSigns = 7;
-
-float sign_distance_km(int k) {
-  float decade = k < 3 ? 1.0 : (k < 6 ? 10.0 : 100.0);
-  int step = k % 3;
-  return decade * (step == 0 ? 1.0 : (step == 1 ? 2.0 : 5.0));
-}
+// A sign as chapters/11_aerial_perspective/signs.cpp places it; its vectors are unit.
+struct SignBoard {
+  vec3 foot_km;  // where the post meets the ground
+  float distance_km;
+  vec3 side, up;
+  vec3 normal;  // towards the scene's place
+};
 
 // Where a ray meets a sign: t_km < 0 if it does not. paint: reflectance; share: of the pixel that it covers.
 struct SignHit {
@@ -58,29 +56,25 @@ float covered(float x, float low, float high, float w) {
 }
 
 // [sign]
-SignHit meet_sign(int k, float ground_radius_km, float azimuth_rad, vec3 start_km, vec3 direction, float pixel) {
+SignHit meet_sign(SignBoard sign, int k, float ground_radius_km, vec3 start_km, vec3 direction, float pixel) {
   SignHit hit;
   hit.share = 0.0;
   hit.t_km = -1.0;
   hit.paint = 0.0;
-  float d = sign_distance_km(k);
-  float azimuth = azimuth_rad + (float(k) - 3.0) * 0.13;
-  vec2 place = vec2(sin(azimuth) * d, cos(azimuth) * d);
-  vec3 side = vec3(cos(azimuth), -sin(azimuth), 0.0);
-  vec3 up = up_at(ground_radius_km, place);
-  hit.normal = cross(up, side) * -1.0;  // towards the scene's place
-  vec3 foot = on_planet(ground_radius_km, place, 0.0) - start_km;
-  float facing = dot(direction, hit.normal);
+  hit.normal = sign.normal;
+  float d = sign.distance_km;
+  vec3 foot = sign.foot_km - start_km;
+  float facing = dot(direction, sign.normal);
   if (abs(facing) < 1.0e-6) return hit;
-  float t = dot(foot, hit.normal) / facing;
-  vec3 at = direction * t - foot;
-  float u = dot(at, side) / d;
-  float v = dot(at, up) / d - 0.5 * d / ground_radius_km;  // the ground there is that much lower
+  float t = dot(foot, sign.normal) / facing;
   if (t <= 0.0) return hit;
+  vec3 at = direction * t - foot;
+  float u = dot(at, sign.side) / d;
+  float v = dot(at, sign.up) / d - 0.5 * d / ground_radius_km;  // the ground there is that much lower
   // Of board and post as much as is in a pixel's square; what is painted there, by nine points of it.
   float w = t * pixel / d;
   float board = covered(u, -0.05, 0.05, w) * covered(v, 0.15, 0.21, w);
-  float post = dot(at, up) > 0.0 ? covered(u, -0.0015, 0.0015, w) * covered(v, -1.0, 0.15, w) : 0.0;
+  float post = dot(at, sign.up) > 0.0 ? covered(u, -0.0015, 0.0015, w) * covered(v, -1.0, 0.15, w) : 0.0;
   if (board + post <= 0.0) return hit;
   float paint = 0.0;
   for (int i = 0; i < 9; i++) {

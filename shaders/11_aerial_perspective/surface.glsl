@@ -1,6 +1,6 @@
 // What a pixel's ray meets first, terrain or a sign: where, its normal and its albedo. The same functions for the picture and for the
 // path tracer's truth. Pure, but for the maps, which the including file gives:
-//   vec2 slope_at(vec2 uv)   vec4 cover_at(vec2 uv)
+//   vec2 slope_at(vec2 uv)   vec4 cover_at(vec2 uv)   int sign_count()   SignBoard sign_board(int k)
 #ifndef WELKIN_SURFACE_GLSL
 #define WELKIN_SURFACE_GLSL
 
@@ -43,13 +43,13 @@ struct SignSeen {
   float share;
 };
 
-SignSeen sign_before(float ground_radius_km, vec3 start_km, vec3 direction, float t_km, float signs_azimuth_rad, float pixel) {
+SignSeen sign_before(float ground_radius_km, vec3 start_km, vec3 direction, float t_km, float pixel) {
   SignSeen seen;
   seen.surface.t_km = t_km;
   seen.surface.is_terrain = false;
   seen.share = 0.0;
-  for (int k = 0; k < kSigns; k++) {
-    SignHit hit = meet_sign(k, ground_radius_km, signs_azimuth_rad, start_km, direction, pixel);
+  for (int k = 0; k < sign_count(); k++) {
+    SignHit hit = meet_sign(sign_board(k), k, ground_radius_km, start_km, direction, pixel);
     if (hit.t_km < 0.0 || hit.t_km >= seen.surface.t_km) continue;
     seen.share = hit.share;
     seen.surface.t_km = hit.t_km;

@@ -6,7 +6,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "interop/view_block.glsl"
 #include "03_planet_and_rays/camera.glsl"
 
-layout(constant_id = 0) const float SIGNS_AZIMUTH = -1.0e3;  // rad, below -100 without
+layout(constant_id = 0) const bool HAS_SIGNS = true;
 layout(constant_id = 1) const float EXTENT_KM = 128.0;
 layout(constant_id = 2) const float RADIUS_KM = 6360.0;
 layout(constant_id = 3) const bool HAS_DETAIL = true;
@@ -16,12 +16,12 @@ layout(binding = 1) uniform sampler2D slope_map;
 layout(binding = 2) uniform sampler2D cover_map;
 layout(binding = 3, rgba32f) uniform writeonly image2D normals;  // w: distance, 0: nothing is met
 layout(binding = 4, rgba32f) uniform writeonly image2D albedos;
+layout(binding = 5) uniform sampler2D sign_boards;
 layout(push_constant) uniform Push {
   vec4 bare_albedo;  // rgb: of the bare ground
 };
 
-vec2 slope_at(vec2 uv) { return textureLod(slope_map, uv, 0.0).rg; }
-vec4 cover_at(vec2 uv) { return textureLod(cover_map, uv, 0.0); }
+#include "11_aerial_perspective/surface_maps.glsl"
 #include "11_aerial_perspective/surface.glsl"
 
 // [surfaces]
@@ -36,8 +36,8 @@ void main() {
   bool seen = terrain.x > 0.0;
   Surface surface;
   if (seen) surface = terrain_surface(RADIUS_KM, EXTENT_KM, bare_albedo.rgb, frame.position_km, direction, terrain.x, HAS_DETAIL ? pixel_rad : kNoDetail);
-  if (SIGNS_AZIMUTH > -100.0) {
-    const SignSeen sign = sign_before(RADIUS_KM, frame.position_km, direction, seen ? terrain.x : 1.0e9, SIGNS_AZIMUTH, pixel_rad);
+  if (HAS_SIGNS) {
+    const SignSeen sign = sign_before(RADIUS_KM, frame.position_km, direction, seen ? terrain.x : 1.0e9, pixel_rad);
     if (sign.share > 0.5) surface = sign.surface, seen = true;  // a path meets one surface or the other
   }
   const vec3 local = vec3(dot(surface.normal, frame.east), dot(surface.normal, frame.north), dot(surface.normal, above));

@@ -12,6 +12,7 @@
 #include "common/image/atomic_file.hpp"
 #include "tests/gpu/harness.hpp"
 #include "tests/unit/temporary.hpp"
+#include "tree.hpp"
 
 using namespace welkin;
 

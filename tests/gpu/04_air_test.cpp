@@ -5,6 +5,7 @@
 #include "chapters/04_air/air.hpp"
 #include "chapters/04_air/phase.hpp"
 #include "common/error.hpp"
+#include "tree.hpp"
 
 using namespace welkin;
 

@@ -12,6 +12,7 @@
 #include "common/app/camera.hpp"
 #include "common/image/csv.hpp"
 #include "tests/gpu/harness.hpp"
+#include "tree.hpp"
 
 using namespace welkin;
 

@@ -8,6 +8,7 @@
 #include "chapters/04_air/constant_sky.hpp"
 #include "common/app/renderer.hpp"
 #include "tests/gpu/harness.hpp"
+#include "tree.hpp"
 
 using namespace welkin;
 

@@ -8,6 +8,7 @@
 
 #include "common/image/csv.hpp"
 #include "tests/gpu/harness.hpp"
+#include "tree.hpp"
 
 namespace welkin::test {
 namespace {

@@ -5,6 +5,7 @@
 #include "common/image/csv.hpp"
 #include "tests/gpu/07_paths.hpp"
 #include "tests/gpu/harness.hpp"
+#include "tree.hpp"
 
 using namespace welkin;
 using namespace welkin::test;

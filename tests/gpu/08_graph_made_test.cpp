@@ -17,8 +17,7 @@ namespace {
 
 // A graph without effects, executed outside of any frame.
 struct GraphFixture {
-  gpu::Pipelines pipelines{device()};
-  graph::Graph graph{device(), pipelines};
+  graph::Graph graph{device()};
   gpu::CommandPool pool = gpu::create_command_pool(device());
   gpu::Timer timer{device()};
   uint32_t index = 0;
@@ -56,7 +55,7 @@ std::vector<app::Effect> whole_frame() {
 
 TEST_CASE(
     "graph: a pipeline is one for the constants its shader has, and goes when nobody holds it and there are many") {
-  gpu::Pipelines pipelines{device()};
+  gpu::Pipelines pipelines(device(), 4);
   const auto get = [&](int form, gpu::Constants more = {}) {
     return pipelines.get("tests/03_rays.comp", joined({{"FORM", form}}, more));
   };
@@ -64,7 +63,8 @@ TEST_CASE(
   CHECK(get(0) == held);
   CHECK(get(0, {{"OF_ANOTHER_SHADER", 7, true}}) == held);
   CHECK(pipelines.count() == 1);
-  for (int form = 1; form <= 63; ++form) get(form);
+  for (int form = 1; form <= 3; ++form) get(form);
+  CHECK(pipelines.count() == 4);
   pipelines.drop_unused();
   CHECK(pipelines.count() == 1);
   CHECK(get(0) == held);

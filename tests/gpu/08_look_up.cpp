@@ -9,6 +9,7 @@
 #include "common/image/csv.hpp"
 #include "common/scene/scene_knobs.hpp"
 #include "tests/gpu/harness.hpp"
+#include "tree.hpp"
 
 namespace welkin::test {
 

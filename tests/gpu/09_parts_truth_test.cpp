@@ -8,6 +8,7 @@
 #include "common/image/csv.hpp"
 #include "tests/gpu/09_sky.hpp"
 #include "tests/gpu/harness.hpp"
+#include "tree.hpp"
 
 using namespace welkin;
 using namespace welkin::test;

@@ -10,6 +10,7 @@
 #include "common/app/session.hpp"
 #include "common/image/csv.hpp"
 #include "tests/gpu/harness.hpp"
+#include "tree.hpp"
 
 namespace welkin::test {
 namespace {

@@ -3,8 +3,10 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
+#include <glm/geometric.hpp>
 
 #include "chapters/11_aerial_perspective/relief.hpp"
+#include "chapters/11_aerial_perspective/signs.hpp"
 #include "chapters/11_aerial_perspective/terrain_map.hpp"
 #include "common/image/atomic_file.hpp"
 #include "tests/gpu/11_parts.hpp"
@@ -163,20 +165,41 @@ TEST_CASE("a surface gives back what falls on it") {
   CHECK(answers[3].radiance[0] * pi == Approx(wall).epsilon(1e-5));
 }
 
-TEST_CASE("each sign stands at its distance and the ground is of unit normals") {
+TEST_CASE("each sign stands upright on the ground at its distance and faces the scene's place") {
+  const double radius_km = 6360.0, azimuth = 0.3;
+  const std::vector<SignBoard> boards = sign_boards(radius_km, azimuth);
   const double distances[] = {1, 2, 5, 10, 20, 50, 100};
-  std::vector<AirItem> items;
+  REQUIRE(boards.size() == 7);
   for (int k = 0; k < 7; ++k) {
-    const double azimuth = 0.3 + (k - 3) * 0.13, lift = 0.18 + distances[k] / 12720.0 - distances[k] / 12720.0;
-    const double length = std::sqrt(1.0 + lift * lift);
-    items.push_back({AirPart::sign,
-                     {0, 0, 0.002, 0},
-                     {std::sin(azimuth) / length, std::cos(azimuth) / length, lift / length, 0},
-                     {double(k), 0.3, 0, 0}});
+    const SignBoard& board = boards[k];
+    const glm::dvec3 from_centre = board.foot_km + glm::dvec3(0.0, 0.0, radius_km);
+    CHECK(std::hypot(board.foot_km.x, board.foot_km.y) == Approx(distances[k]).epsilon(1e-12));
+    CHECK(std::atan2(board.foot_km.x, board.foot_km.y) == Approx(azimuth + (k - 3) * 0.13).epsilon(1e-12));
+    CHECK(glm::length(from_centre) == Approx(radius_km).epsilon(1e-14));
+    CHECK(glm::length(board.up - from_centre / radius_km) < 1e-12);
+    CHECK(std::abs(glm::dot(board.normal, board.up)) < 1e-12);
+    CHECK(std::abs(glm::dot(board.normal, board.side)) < 1e-12);
+    CHECK(glm::dot(board.normal, glm::normalize(-board.foot_km)) > 0.9999);
   }
+}
+
+TEST_CASE("a ray meets a sign where its board is, and passes above it and between board and ground") {
+  std::vector<AirItem> items;
+  std::vector<double> expected;
+  for (const double d : {1.0, 20.0, 100.0})
+    for (const double tilt : {0.0, 0.2})
+      for (const double height : {0.18, 0.3, 0.1}) {  // of the board's middle, above it, beside the post; in distances
+        // The board is where (0, d, 0) + s up is, s = height d and what the ground has fallen by.
+        const double s = height * d + 0.5 * d * d / 6360.0, x = height == 0.1 ? 0.01 * d : 0.0;
+        const glm::dvec3 at(x, d + s * std::sin(tilt), s * std::cos(tilt)), ray = glm::normalize(at);
+        items.push_back({AirPart::sign, {0, 0, 0, d}, {ray.x, ray.y, ray.z, 0}, {tilt, d, 0, 0}});
+        expected.push_back(height == 0.18 ? glm::length(at) : -1.0);
+      }
   const std::vector<AirAnswer> answers = evaluate_air(reference::earth(), items);
-  for (int k = 0; k < 7; ++k)
-    CHECK(answers[k].radiance[0] == Approx(distances[k] * std::sqrt(1.0 + 0.18 * 0.18)).epsilon(0.005));
+  for (size_t i = 0; i < items.size(); ++i) CHECK(answers[i].radiance[0] == Approx(expected[i]).epsilon(2e-6));
+}
+
+TEST_CASE("the ground is of unit normals and of albedos between 0 and 1") {
   for (const AirAnswer& answer : evaluate_air(
            reference::earth(), {{AirPart::ground, {0.3, -0.2, 0, 0}, {0.2, 0.3, 0.1, 0.4}, {12.3, -40.0, 1e-6, 0}},
                                 {AirPart::ground, {0, 0, 0, 0}, {0, 0, 0, 1}, {0, 0, 1.0, 0}}})) {

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <map>
+#include <utility>
 
 namespace welkin::test {
 namespace {
@@ -12,11 +14,11 @@ namespace {
 struct Machine {
   gpu::Instance instance{gpu::Validation::off, {}};
   gpu::Device device{instance, gpu::choose_device(gpu::list_devices(instance), ""), false};
+  std::map<std::pair<std::string, gpu::Specialization>, gpu::ComputePipeline>
+      pipelines;  // making one takes up to a second
 };
 
-}  // namespace
-
-const gpu::Device& device() {
+Machine& machine() {
   static const std::unique_ptr<Machine> machine = [] {
     try {
       return std::make_unique<Machine>();
@@ -26,15 +28,26 @@ const gpu::Device& device() {
       std::_Exit(static_cast<int>(Exit::skipped));
     }
   }();
-  return machine->device;
+  return *machine;
 }
+
+const gpu::ComputePipeline& pipeline_of(const std::string& shader, const gpu::Specialization& specialization) {
+  gpu::ComputePipeline& pipeline = machine().pipelines[{shader, specialization}];
+  if (pipeline.bindings.empty())
+    pipeline = gpu::create_compute_pipeline(
+        device(), shader, {{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}},
+        sizeof(uint32_t), specialization);
+  return pipeline;
+}
+
+}  // namespace
+
+const gpu::Device& device() { return machine().device; }
 
 std::vector<float> evaluate(const std::string& shader, const std::vector<float>& inputs, size_t inputs_per_item,
                             size_t outputs_per_item, const gpu::Specialization& specialization) {
   const uint32_t count = static_cast<uint32_t>(inputs.size() / inputs_per_item);
-  const gpu::ComputePipeline pipeline = gpu::create_compute_pipeline(
-      device(), shader, {{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}}, sizeof count,
-      specialization);
+  const gpu::ComputePipeline& pipeline = pipeline_of(shader, specialization);
   const gpu::DescriptorSet set = gpu::create_descriptor_set(device(), pipeline.set_layout, pipeline.bindings);
   const gpu::Buffer in = gpu::create_buffer(device(), "inputs", inputs.size() * sizeof(float),
                                             VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::upload);

@@ -8,6 +8,7 @@
 
 #include "common/image/atomic_file.hpp"
 #include "temporary.hpp"
+#include "tree.hpp"
 
 #ifndef WELKIN_SOURCE_DIRECTORY
 #define WELKIN_SOURCE_DIRECTORY "."

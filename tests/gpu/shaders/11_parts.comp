@@ -123,7 +123,14 @@ RayLight run(Atmosphere air, vec4 a, vec4 b, vec4 c) {
     light.transmittance = ground.normal;
     return light;
   }
-  const SignHit hit = meet_sign(int(c.x), air.ground_radius_km, c.y, a.xyz, b.xyz, 1.0e-4);
+  // A sign straight north that faces the origin: a.w away, its foot at (0, c.y, c.z), tilted by c.x.
+  SignBoard sign;
+  sign.distance_km = a.w;
+  sign.foot_km = vec3(0.0, c.y, c.z);
+  sign.side = vec3(1.0, 0.0, 0.0);
+  sign.up = vec3(0.0, sin(c.x), cos(c.x));
+  sign.normal = vec3(0.0, -cos(c.x), sin(c.x));
+  const SignHit hit = meet_sign(sign, 0, air.ground_radius_km, a.xyz, b.xyz, 1.0e-4);
   light.radiance = vec3(hit.t_km, hit.paint, 0.0);
   light.transmittance = hit.normal;
   return light;
