@@ -23,7 +23,7 @@ gpu::Constants march_constants(const app::Context& context) {
 }  // namespace
 
 // [knobs]
-// The product of the largest counts stays below 65,535: a software driver ends loops there, without a word.
+// The product of the largest counts stays below 65,535: a software driver silently ends loops there.
 std::vector<Knob> march_knobs() {
   return {{.name = "view.steps",
            .unit = "steps",
