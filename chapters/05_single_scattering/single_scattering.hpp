@@ -26,4 +26,9 @@ struct MarchPush {
   int32_t view_steps, unused[3];
 };
 
+// And of its probe.comp; count: of rays.
+struct MarchProbePush {
+  int32_t view_steps, count, unused[2];
+};
+
 }  // namespace welkin

@@ -258,9 +258,32 @@ std::string GroundTruth::explain() const {
   return text;
 }
 
+void add_paths(app::Builder& builder, app::Board& board, const std::string& pass,
+               const std::optional<SurfaceImages>& surfaces) {
+  const auto tracer = std::make_shared<GroundTruth>(builder.context, surfaces.has_value());
+  const graph::Resource picture = builder.picture(board, "picture");
+  graph::Step step;
+  if (surfaces) step.accesses = {{surfaces->normals, gpu::kComputeRead}, {surfaces->albedos, gpu::kComputeRead}};
+  step.accesses.push_back({picture, gpu::kComputeWrite});
+  step.record = [tracer, surfaces, picture, drawn_into = uint64_t{0}](const graph::Recorder& r) mutable {
+    const gpu::Image& target = r.graph.image(picture);
+    const uint64_t version = r.graph.version(picture);
+    if (std::exchange(drawn_into, version) != version) {
+      tracer->set_target(target);
+      if (surfaces) tracer->set_surfaces({&r.graph.image(surfaces->normals), &r.graph.image(surfaces->albedos)});
+    }
+    const app::Frame& f = r.frame;
+    tracer->draw({f.commands, target, f.camera, f.timer, f.index, f.seed, f.seconds, f.position_km, f.cut});
+  };
+  graph::Pass drawing{.name = pass, .changed = [](const app::Frame&) { return true; }, .times_itself = true};
+  drawing.steps.push_back(std::move(step));
+  builder.graph.add(std::move(drawing));
+  builder.explain = [tracer] { return tracer->explain(); };
+}
+
 app::Effect paths() {
-  app::Effect effect = app::drawn_by(
-      "paths", 7, path_knobs(), [](const app::Context& context) { return std::make_unique<GroundTruth>(context); });
+  app::Effect effect{.name = "paths", .chapter = 7, .knobs = path_knobs()};
+  effect.declare = [](app::Builder& builder, app::Board& board) { add_paths(builder, board, "program"); };
   effect.key = [](const Scene& scene, const Settings&) { return air_key(scene) + fmt::format(" {}", scene.sun.disc); };
   return effect;
 }

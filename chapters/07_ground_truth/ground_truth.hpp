@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "chapters/04_air/air_block.hpp"
@@ -18,6 +20,14 @@ app::Truth path_truth();
 
 // The path tracer as an effect; it makes the frame's first picture.
 app::Effect paths();
+// FirstSurfaces (below) as images of a frame's graph.
+struct SurfaceImages {
+  graph::Resource normals, albedos;
+};
+// For the declaration of such an effect: adds the pass that draws the picture, with barriers and timestamps of its own.
+// Where `surfaces` are given, the rays from the eye end on them.
+void add_paths(app::Builder& builder, app::Board& board, const std::string& pass,
+               const std::optional<SurfaceImages>& surfaces = {});
 std::vector<app::ProbeResult> probe_paths(const app::Context& context, std::span<const app::ProbeRay> rays);
 
 // How many batches a number of samples is cut into, and how many samples each has: few enough that no invocation's

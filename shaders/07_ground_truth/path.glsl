@@ -3,8 +3,8 @@
 // The path carries, per channel, its throughput: what the medium did to the light along it (transmittance, scattering
 // coefficients, phase functions, albedo), and its pdf: the density with which that channel would have drawn this very
 // path. One channel, the hero, draws; all three are weighted by throughput / mean(pdf), which is unbiased for each (the
-// balance heuristic; Wilkie et al. 2014). With one channel a path, both are 0 for the others: the same lines compute
-// both.
+// balance heuristic; Wilkie et al. 2014). With one channel per path, both are 0 for the other channels: the same
+// lines serve both ways.
 //
 // The including file gives HAS_* and MIE_PHASE; TRACKING; HERO (const bool); ENVIRONMENT (const bool): light of
 // radiance 1 from outside in place of the sun; SPREAD (const bool): whether collisions are also put where no flight
