@@ -1,5 +1,5 @@
-// Chapter 03, planet and rays: where does a ray meet the planet, when the planet has 6360 km, the camera stands half a
-// metre above it or beside the Moon, and a float has 24 bits?
+// Chapter 03, planet and rays: where a ray meets a planet of 6360 km radius, computed in floats of 24 bits, for cameras
+// from half a metre above the ground to the Moon's distance.
 #include "chapters/02_window/window.hpp"
 #include "chapters/03_planet_and_rays/planet_and_rays.hpp"
 
@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
       .knobs = planet_knobs(),
       .reference = {{"rays.form", "double_float"}},
       .default_scene = "earth",
-      // From the grass to the Moon's distance: each loses other digits.
+      // From the grass to the Moon's distance: float32 loses digits in a different place in each of them.
       .standard_views = {{"earth", "grass"},
                          {"earth", "summit"},
                          {"orbit", "limb"},

@@ -7,7 +7,7 @@
 namespace welkin {
 namespace {
 
-// As in planet.comp. 112 of the 128 bytes every device has.
+// Push constants of planet.comp: 112 of the 128 bytes that every device offers.
 struct Push {
   CameraRays camera;
   glm::vec4 planet;  // x: ground radius, km; y: altitude of the top of the atmosphere, km; z: angle of a pixel, rad

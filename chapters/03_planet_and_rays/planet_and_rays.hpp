@@ -1,4 +1,4 @@
-// Chapter 03's program: one compute pass that asks every pixel's ray where it meets the planet.
+// Chapter 03's program: one compute pass that finds for every pixel where its ray meets the planet.
 #pragma once
 
 #include <vector>

@@ -42,7 +42,7 @@ double king_factor(double wavelength_um) {
   const double x = 1.0 / (wavelength_um * wavelength_um);
   const double nitrogen = 1.034 + 3.17e-4 * x;                    // Bates 1984, as Bodhaine et al. 1999, eq. 5
   const double oxygen = 1.096 + 1.385e-3 * x + 1.448e-4 * x * x;  // eq. 6
-  constexpr double argon = 1.00, carbon_dioxide = 1.15;           // an atom is round
+  constexpr double argon = 1.00, carbon_dioxide = 1.15;           // an argon atom is round
   constexpr double share[] = {78.084, 20.946, 0.934, 0.036};      // per cent of volume
   return (share[0] * nitrogen + share[1] * oxygen + share[2] * argon + share[3] * carbon_dioxide) /
          (share[0] + share[1] + share[2] + share[3]);  // eq. 23
@@ -107,7 +107,7 @@ std::vector<Medium> quoted_earth() {
 // [derived]
 std::vector<Medium> derived_earth(double turbidity, double ozone_DU) {
   constexpr double aerosol_albedo = 0.9;
-  std::vector<Medium> media = quoted_earth();  // shapes and phase functions; every coefficient is replaced
+  std::vector<Medium> media = quoted_earth();  // keeps profiles and phase functions; replaces every coefficient
   for (int c = 0; c < 3; ++c) {
     media[0].scattering_per_km[c] = rayleigh_scattering_per_km(kWavelengths_um[c]);
     const double extinction = aerosol_optical_depth(kWavelengths_um[c], turbidity) / media[1].scale_height_km;
@@ -129,7 +129,8 @@ double relative_density(const Medium& medium, double altitude_km) {
 double vertical_column_km(const Medium& medium, double top_km) {
   if (medium.profile == Profile::exponential)
     return -medium.scale_height_km * std::expm1(-top_km / medium.scale_height_km);
-  // A tent: its integral up to z, counted from its left foot in half widths, is u^2/2 rising and 1 - (2-u)^2/2 falling.
+  // A tent. With u the distance of z from its lower end, in half widths, its integral up to z is u^2/2 half widths
+  // below the peak (u <= 1) and 1 - (2-u)^2/2 above it.
   const auto below = [&](double z) {
     const double u = std::clamp((z - medium.peak_altitude_km) / medium.half_width_km + 1.0, 0.0, 2.0);
     return medium.half_width_km * (u <= 1.0 ? u * u / 2.0 : 1.0 - (2.0 - u) * (2.0 - u) / 2.0);
@@ -140,7 +141,8 @@ double vertical_column_km(const Medium& medium, double top_km) {
 
 // [make_atmosphere]
 interop::Atmosphere make_atmosphere(const Scene& scene) {
-  const Medium none{.scale_height_km = 1.0, .half_width_km = 1.0};  // coefficients 0, and no shape that divides by 0
+  // Coefficients are 0; lengths are 1 km, since shaders divide by them.
+  const Medium none{.scale_height_km = 1.0, .half_width_km = 1.0};
   const auto medium = [&](const char* kind) -> const Medium& {
     const Medium* found = scene.medium(kind);
     return found ? *found : none;

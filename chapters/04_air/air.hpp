@@ -1,4 +1,5 @@
-// What air is made of: coefficients derived from physics and as the field quotes them, and both handed to the shaders.
+// What air is made of: its coefficients derived from physics, the same as the field quotes them, and the block that
+// hands a scene's to the shaders.
 //
 // Wavelengths in um, coefficients in 1/km, columns in km (of air as dense as at the ground, or at the ozone's peak).
 // CPU, double. The derivations and the sources with equation numbers are in docs/chapters/04_air.md.
@@ -23,9 +24,9 @@ inline constexpr double kStandardTemperature_K = 288.15;  // 15 C: the air Peck 
 double refractive_index(double wavelength_um);
 // Molecules per m^3 of an ideal gas: p / (k T).
 double number_density(double pressure_Pa, double temperature_K);
-// How much more molecules scatter because they are not round: > 1, dry air with 0.036 % CO2.
+// King factor, > 1: how much more molecules scatter because they are not round. Dry air with 0.036 % CO2.
 double king_factor(double wavelength_um);
-// Share of depolarised light rho and King factor say the same thing: F = (6 + 3 rho) / (6 - 7 rho).
+// The share of depolarised light, rho, follows from the King factor F and F from it: F = (6 + 3 rho) / (6 - 7 rho).
 double depolarization(double king);
 double king_factor_from_depolarization(double rho);
 // beta = 8 pi^3 (n^2 - 1)^2 / (3 N lambda^4) F, in 1/km, N in 1/m^3.
@@ -47,7 +48,8 @@ inline constexpr std::array<double, 3> kOzoneCrossSection_m2{1.209e-25, 3.500e-2
 // The three media of the neutral Earth as the field quotes them, and as the functions above derive them.
 std::vector<Medium> quoted_earth();
 std::vector<Medium> derived_earth(double turbidity, double ozone_DU);
-// Density of a medium at an altitude relative to where its coefficients hold; and its integral from 0 to `top_km`.
+// A medium's density at an altitude, relative to where its coefficients hold (the ground, or the tent's peak); and the
+// integral of that from 0 to `top_km`.
 double relative_density(const Medium& medium, double altitude_km);
 double vertical_column_km(const Medium& medium, double top_km);
 

@@ -16,7 +16,8 @@ struct AirBlock {
 interop::Atmosphere air_of_device(const app::Context& context);
 
 gpu::Constants air_constants(const Scene& scene);
-std::string air_key(const Scene& scene);  // the same as text, for the key of an effect that is compiled for it
+// The same as text, for the key of an effect whose shaders have these constants.
+std::string air_key(const Scene& scene);
 
 // Pass "air": writes the block, when it differs from what is there.
 app::Effect air();

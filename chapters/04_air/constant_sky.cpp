@@ -23,7 +23,7 @@ gpu::Buffer upload(const gpu::Device& device, const char* name, const std::vecto
   return buffer;
 }
 
-// Runs sky_rays.comp over `count` items of 64 a workgroup.
+// Runs sky_rays.comp over `count` items, 64 per workgroup.
 template <typename Push>
 void dispatch_rays(VkCommandBuffer commands, const gpu::ComputePipeline& pipeline, const gpu::DescriptorSet& set,
                    const Push& push, uint32_t count) {
@@ -32,7 +32,8 @@ void dispatch_rays(VkCommandBuffer commands, const gpu::ComputePipeline& pipelin
 
 interop::Atmosphere air_of(const app::Context& context) {
   Scene scene = context.scene;
-  // The copied slip: 4.40e-3 where 0.44e-3 is meant. Planted to show that the tests see it.
+  // A slip that codes have copied from each other, 4.40e-3 per km instead of 0.44e-3: planted to show that the tests
+  // catch it.
   if (Medium* mie = scene.medium("mie"); mie != nullptr && context.inject == "wrong-constant")
     mie->absorption_per_km *= 10.0;
   return make_atmosphere(scene);
@@ -82,7 +83,7 @@ void ConstantSkyProgram::rebuild() {
   gpu::write_buffer(device, sphere_set_, 0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, atmosphere_);
   gpu::write_buffer(device, sphere_set_, 1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, directions_);
   gpu::write_buffer(device, sphere_set_, 2, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-                    per_vertex_ ? colours_ : directions_);  // unread without colours
+                    per_vertex_ ? colours_ : directions_);  // not read per pixel
   finish_set_ = gpu::create_descriptor_set(device, finish_pipeline_.set_layout, finish_pipeline_.bindings);
   gpu::write_buffer(device, finish_set_, 0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, atmosphere_);
   if (target_ != nullptr) set_target(*target_);
@@ -101,8 +102,8 @@ void ConstantSkyProgram::set_target(const gpu::Image& target) {
 // [draw]
 void ConstantSkyProgram::draw(const app::Frame& frame) {
   const VkCommandBuffer commands = frame.commands;
-  // The air: scene and sun may have changed. An earlier frame may still read the buffer; its stages stand on the before
-  // side.
+  // Scene and sun may have changed, so every frame writes the air. An earlier frame may still read the buffer: the
+  // barrier waits for the stages that do.
   constexpr VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
                                   fragment = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
   constexpr gpu::Use updated{VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT};
@@ -111,13 +112,14 @@ void ConstantSkyProgram::draw(const app::Frame& frame) {
   vkCmdUpdateBuffer(commands, atmosphere_.handle, 0, sizeof air, &air);
   gpu::buffer_barrier(commands, atmosphere_.handle, updated, {compute | fragment, VK_ACCESS_2_UNIFORM_READ_BIT});
 
-  // The sky image: read by the finish pass of an earlier frame, drawn into, read by the finish pass of this one.
+  // The sky image: an earlier frame's finish pass may still read it; then it is drawn into, and this frame's finish
+  // pass reads it.
   constexpr gpu::Use drawn{VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
                            VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
   gpu::image_barrier(commands, sky_.handle, {compute}, drawn);
   {
-    const gpu::TimedPass pass(frame.timer, commands,
-                              "sky sphere");  // its vertices' colours included, so that methods compare
+    // The time includes the vertices' colours, so that the two methods can be compared.
+    const gpu::TimedPass pass(frame.timer, commands, "sky sphere");
     if (per_vertex_) {
       constexpr VkPipelineStageFlags2 vertex = VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT;
       gpu::buffer_barrier(commands, colours_.handle, {vertex}, gpu::kComputeWrite);
@@ -166,7 +168,7 @@ void ConstantSkyProgram::draw_sphere(const app::Frame& frame) {
 std::vector<app::ProbeResult> ConstantSkyProgram::probe(std::span<const app::ProbeRay> rays) {
   const gpu::Device& device = context_.device;
   std::vector<glm::vec4> items;
-  for (const app::ProbeRay& ray : rays) {  // azimuth 0 is the sun's
+  for (const app::ProbeRay& ray : rays) {  // azimuth 0 points to the sun
     items.emplace_back(app::direction_from(ray.view_zenith_deg, ray.relative_azimuth_deg), ray.altitude_km);
     items.emplace_back(app::direction_from(ray.sun_zenith_deg, 0.0), 0.0);
   }

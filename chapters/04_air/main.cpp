@@ -1,5 +1,5 @@
-// Chapter 04, air: what scatters and absorbs, how much and where to; and the first sky one would draw with it: air of
-// one density everywhere, in closed form, on the triangles of a sky sphere.
+// Chapter 04, air: what scatters and absorbs light, how much, and in which directions; and a first sky made of it: air
+// of one density everywhere, in closed form, drawn on the triangles of a sky sphere.
 #include "chapters/02_window/window.hpp"
 #include "chapters/04_air/constant_sky.hpp"
 

@@ -1,5 +1,6 @@
-// The phase functions of shaders/04_air/phase.glsl in double, written from the printed formulas and sharing no text
-// with the shader: what the shader is tested against. nu: cosine between the directions of propagation. Units: 1/sr.
+// The phase functions of shaders/04_air/phase.glsl in double. They are written from the printed formulas and share no
+// text with the shader, so that the shader can be tested against them. nu: cosine between the directions of
+// propagation. Units: 1/sr.
 #pragma once
 
 #include <cmath>
@@ -16,7 +17,8 @@ inline double rayleigh_anisotropic(double nu, double rho) {
   return 3.0 / (16.0 * std::numbers::pi * (1.0 + 2.0 * c)) * ((1.0 + 3.0 * c) + (1.0 - c) * nu * nu);
 }
 
-// From 1 - nu, because in double too 1 + g^2 - 2 g nu loses what a float input would tell apart.
+// Takes 1 - nu: from nu, 1 + g^2 - 2 g nu cancels even in double, and small float values of 1 - nu would give one
+// result.
 inline double henyey_greenstein(double one_minus_nu, double g) {
   return 0.25 / std::numbers::pi * (1.0 - g) * (1.0 + g) /
          std::pow((1.0 - g) * (1.0 - g) + 2.0 * g * one_minus_nu, 1.5);

@@ -37,7 +37,7 @@ SkySphere load_sky_sphere(const std::filesystem::path& file) {
   std::vector<tinyobj::shape_t> shapes;
   std::vector<tinyobj::material_t> materials;
   std::string warning, error;
-  // Not triangulated by the library: its ear clipping takes time quadratic in a face's corners.
+  // The library does not triangulate here: its ear clipping takes time quadratic in the number of a face's corners.
   const bool read = tinyobj::LoadObj(&attributes, &shapes, &materials, &warning, &error, &text, nullptr, false);
   if (!read) fail("sky sphere {}: {}; {}", name, first_line(error), kAccepted);
 
@@ -94,7 +94,7 @@ SkySphere subdivide(const SkySphere& sphere) {
     if (is_new) {
       const glm::dvec3 sum = glm::dvec3(sphere.directions[a]) + glm::dvec3(sphere.directions[b]);
       const double length = glm::length(sum);
-      // Opposite corners have no middle: either will do, the triangle is a half circle and not a sphere's.
+      // Opposite corners have no middle direction. Either corner will do: no triangle of a sphere spans a half circle.
       finer.directions.push_back(length > 1e-6 ? glm::vec4(sum / length, 0.0) : sphere.directions[a]);
     }
     return place->second;

@@ -1,6 +1,5 @@
-// Chapter 05, single scattering: sunlight that is scattered once on its way to the eye. For every pixel a march along
-// the view ray; at each of its samples a march towards the sun; the planet's shadow, ozone, the ground and the sun's
-// disc.
+// Chapter 05, single scattering: sunlight that is scattered once on its way to the eye. Every pixel marches along its
+// view ray, and each sample marches towards the sun. With the planet's shadow, ozone, the ground and the sun's disc.
 #include "chapters/02_window/window.hpp"
 #include "chapters/05_single_scattering/single_scattering.hpp"
 

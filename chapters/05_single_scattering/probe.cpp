@@ -8,7 +8,7 @@
 namespace welkin {
 namespace {
 
-constexpr size_t kBatch = 1 << 16;  // fits any device's largest storage buffer many times over
+constexpr size_t kBatch = 1 << 16;  // rays; far below what the smallest device's storage buffer holds
 
 app::Effect probe_buffers(size_t room) {
   app::Effect effect{.name = "probe rays", .chapter = 5};
@@ -40,8 +40,8 @@ MarchRay march_ray(const app::ProbeRay& ray, const Planet& planet) {
   const MarchRay miss{{0.0, 0.0, 1.0, top_km}, {sun, 0.0}};
   const double closest_km = (planet.ground_radius_km + ray.altitude_km) * std::sin(view_zenith);
   if (ray.view_zenith_deg <= 90.0 || closest_km >= planet.top_radius_km) return miss;
-  // At the entry the line makes a larger angle with the vertical: sin(zenith) = closest / top radius, looking down. The
-  // local frame turns by the difference about the horizontal axis across the view.
+  // Where the ray enters the air it looks down at sin(zenith) = closest / top radius. From the camera to there the
+  // local frame turns by the difference of the two zenith angles, about the horizontal axis across the view.
   const double entry_zenith = glm::radians(180.0) - std::asin(closest_km / planet.top_radius_km);
   const double turn = entry_zenith - view_zenith;
   sun = {std::cos(turn) * sun.x + std::sin(turn) * sun.z, sun.y, std::cos(turn) * sun.z - std::sin(turn) * sun.x};

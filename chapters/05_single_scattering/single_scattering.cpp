@@ -8,10 +8,6 @@
 namespace welkin {
 namespace {
 
-struct ProbePush {
-  int32_t view_steps, count, unused[2];
-};
-
 // [constants]
 gpu::Constants march_constants(const app::Context& context) {
   return {{"SUN_DISC", context.scene.sun.disc, true},
@@ -23,7 +19,7 @@ gpu::Constants march_constants(const app::Context& context) {
 }  // namespace
 
 // [knobs]
-// The product of the largest counts stays below 65,535: a software driver ends loops there, without a word.
+// The product of the largest counts stays below 65,535: a software driver silently ends loops there.
 std::vector<Knob> march_knobs() {
   return {{.name = "view.steps",
            .unit = "steps",
@@ -89,7 +85,7 @@ std::vector<app::ProbeResult> probe_single_scattering(const app::Context& contex
                     .constants = joined(air.constants, march_constants(builder.context)),
                     .bindings = {{"Air", air.block}, {"Rays", probe.rays}, {"Results", probe.results}},
                     .record = [context = builder.context, range = probe.range](const graph::Recorder& r) {
-                      r.push(ProbePush{context.settings.integer("view.steps"), range->count, {}});
+                      r.push(MarchProbePush{context.settings.integer("view.steps"), range->count, {}});
                       r.dispatch(static_cast<uint32_t>(range->count + 63) / 64);
                     }});
   };

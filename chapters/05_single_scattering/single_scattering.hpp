@@ -7,11 +7,11 @@
 
 namespace welkin {
 
-inline constexpr int kRuleAdapted = 5;  // of the choices of the knob `rule`: the one later chapters march by
+inline constexpr int kRuleAdapted = 5;  // index in the choices of the knob `rule`; later chapters use this rule
 
 // The chapter's knobs: view.steps, light.steps, rule.
 std::vector<Knob> march_knobs();
-// The one of this name, as a later chapter takes it over.
+// One of them by name, for a later chapter that has the same knob.
 Knob march_knob(const std::string& name);
 
 // Pass "march": a picture of the sky by single scattering, the sun's disc behind the air.
@@ -24,6 +24,11 @@ std::vector<app::ProbeResult> probe_single_scattering(const app::Context& contex
 struct MarchPush {
   CameraRays camera;
   int32_t view_steps, unused[3];
+};
+
+// And of its probe.comp; count: of rays.
+struct MarchProbePush {
+  int32_t view_steps, count, unused[2];
 };
 
 }  // namespace welkin

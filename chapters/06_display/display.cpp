@@ -7,8 +7,8 @@ namespace welkin {
 namespace {
 
 constexpr uint32_t kMeterBins = 256;
-constexpr uint32_t kTile = 32;  // samples a workgroup of the histogram counts, each way
-// Of an exposure set by hand, at 0 stops: the factor the chapters before this one use.
+constexpr uint32_t kTile = 32;  // a workgroup of the histogram counts kTile x kTile samples
+// log2 of the exposure factor at 0 stops, where it is set by hand: the factor that earlier chapters use.
 const double kBaseLog2 = std::log2(24.0);
 
 struct CountPush {
@@ -94,7 +94,7 @@ double adapted_share(double seconds, double tau_s) { return tau_s > 0.0 ? -std::
 // [/share]
 
 // [histogram]
-// Counts the logarithms of the picture's luminance, from nothing in every frame.
+// Counts the picture's log2 luminances; every frame starts again from zero.
 static graph::Pass histogram_pass(const app::Context& context, graph::Resource picture, graph::Resource histogram) {
   graph::Pass pass{.name = "histogram", .changed = [](const app::Frame&) { return true; }};
   pass.steps.push_back({.accesses = {{histogram, gpu::kUpdate}}, .record = [histogram](const graph::Recorder& r) {
@@ -117,7 +117,7 @@ static graph::Pass histogram_pass(const app::Context& context, graph::Resource p
 // [/histogram]
 
 // [exposure_pass]
-// Turns the counts into one number and follows it in time: the state is read and written, frame after frame.
+// Turns the counts into a target and moves the exposure towards it: every frame reads and writes the same state.
 static graph::Pass exposure_pass(const app::Context& context, graph::Resource histogram, graph::Resource state) {
   graph::Pass pass{.name = "exposure", .changed = [](const app::Frame&) { return true; }};
   pass.steps.push_back(

@@ -1,8 +1,8 @@
 // From the linear picture to 8 bits: a light meter, a tone curve, the screen's curve, dithering. Chapters from here on
 // show their pictures through it.
 //
-// Three passes: "histogram" counts log2 luminance, "exposure" turns the counts into one number and follows it in time,
-// "display" draws. With an exposure set by hand the first two do not exist, nor do their buffers.
+// Three passes: "histogram" counts log2 luminance, "exposure" turns the counts into a target and moves the exposure
+// towards it, "display" draws. With an exposure set by hand the first two do not exist, nor do their buffers.
 #pragma once
 
 #include <string>
@@ -18,9 +18,9 @@ std::vector<Knob> display_knobs();   // display.*
 // What the meter found, as it lies in its buffer.
 struct ExposureState {
   float exposure;     // log2 of the factor light is multiplied by, before compensation
-  float target;       // where it is going
-  float mean_log2;    // of the luminance between the two ranks
-  uint32_t measured;  // samples that had a logarithm
+  float target;       // log2 of the factor it moves towards
+  float mean_log2;    // mean log2 luminance of the samples between the two ranks
+  uint32_t measured;  // samples with a luminance above 0
 };
 
 // On the board where there is a light meter: an ExposureState, and 256 counts.
@@ -28,8 +28,8 @@ struct Exposure {
   graph::Resource state, histogram;
 };
 
-// Share of the way to a target that is gone after `seconds`: 1 - exp(-seconds / tau), without cancellation; 1 if tau is
-// 0.
+// Share of the way to a target that is covered after `seconds`: 1 - exp(-seconds / tau), without cancellation; 1 where
+// tau is 0.
 double adapted_share(double seconds, double tau_s);
 
 app::Effect exposure();

@@ -1,5 +1,5 @@
 // Chapter 06, display: the sky of chapter 05 seen through a light meter, a tone curve and a dither. The light is the
-// same; what a screen makes of it is decided here.
+// same as in chapter 05; this chapter decides how a screen shows it.
 #include "chapters/02_window/window.hpp"
 #include "chapters/05_single_scattering/single_scattering.hpp"
 #include "chapters/06_display/display.hpp"

@@ -14,7 +14,7 @@ constexpr VkDescriptorType kImage = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
 constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 constexpr VkDescriptorType kUniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
 constexpr VkDeviceSize kSumBytes = 32;  // per pixel: Accumulated in accumulate.glsl
-// A standard error from fewer batches is a rumour.
+// From fewer batches a standard error is too uncertain to stop at.
 constexpr int kBatchesToJudge = 16;
 
 struct TracePush {
@@ -77,7 +77,8 @@ std::vector<Knob> path_knobs() {
 
 // [batches]
 Batches batches_of(int samples, int tracking) {
-  // A flight under one majorant makes hundreds of turns; a driver may end loops after 65,535 in all, without a word.
+  // A driver may silently end loops after 65,535 iterations in all, and a flight under one constant majorant takes
+  // hundreds: the looser the majorant, the fewer samples per invocation.
   constexpr int kSamplesPerInvocation[] = {1, 2, 4, 8};
   const int most = kSamplesPerInvocation[tracking];
   const int count = (samples + most - 1) / most;
@@ -149,7 +150,7 @@ void GroundTruth::set_surfaces(const FirstSurfaces& surfaces) {
 void GroundTruth::set_target(const gpu::Image& target) {
   if (target.size.width != size_.width || target.size.height != size_.height) {
     size_ = target.size;
-    for (gpu::Buffer& sums : sums_) sums = {};  // the old ones go before the new ones come
+    for (gpu::Buffer& sums : sums_) sums = {};  // frees the old ones before the new ones are made
     for (gpu::Buffer& sums : sums_)
       sums = gpu::create_buffer(context_.device, "path sums", kSumBytes * size_.width * size_.height,
                                 VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::device);
@@ -167,7 +168,7 @@ void GroundTruth::set_target(const gpu::Image& target) {
   }
 }
 
-// Writes the atmosphere into its block. Earlier frames may still read it: their reads come first.
+// Writes the atmosphere into its block. Earlier frames may still read it: the barrier waits for them.
 void GroundTruth::update_air(VkCommandBuffer commands) const {
   const interop::Atmosphere air = air_of_device(context_);
   constexpr gpu::Use written{VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT};
@@ -179,7 +180,7 @@ void GroundTruth::update_air(VkCommandBuffer commands) const {
 // [changed]
 bool GroundTruth::changed(const app::Frame& frame) {
   Subject now{frame.camera, make_atmosphere(context_.scene), {}};
-  now.camera.time_s = 0.0f;  // time and frame number: the same picture
+  now.camera.time_s = 0.0f;  // time and frame number do not change the picture
   now.camera.frame = 0;
   for (const Knob& knob : context_.settings.knobs())
     if (knob.name == "samples" || knob.name == "orders" || knob.name == "tracking" || knob.name == "spectral")
@@ -192,7 +193,8 @@ bool GroundTruth::changed(const app::Frame& frame) {
 }
 // [/changed]
 
-// What the device left of an earlier frame. It may be writing the next one: a few workgroups older or newer, no matter.
+// From what the device wrote for an earlier frame. It may be writing the next one meanwhile: that some workgroups are
+// then newer does not matter.
 double GroundTruth::relative_error() const {
   double errors = 0.0, luminances = 0.0;
   for (const glm::vec4& group : groups_.as<glm::vec4>()) {
@@ -256,9 +258,32 @@ std::string GroundTruth::explain() const {
   return text;
 }
 
+void add_paths(app::Builder& builder, app::Board& board, const std::string& pass,
+               const std::optional<SurfaceImages>& surfaces) {
+  const auto tracer = std::make_shared<GroundTruth>(builder.context, surfaces.has_value());
+  const graph::Resource picture = builder.picture(board, "picture");
+  graph::Step step;
+  if (surfaces) step.accesses = {{surfaces->normals, gpu::kComputeRead}, {surfaces->albedos, gpu::kComputeRead}};
+  step.accesses.push_back({picture, gpu::kComputeWrite});
+  step.record = [tracer, surfaces, picture, drawn_into = uint64_t{0}](const graph::Recorder& r) mutable {
+    const gpu::Image& target = r.graph.image(picture);
+    const uint64_t version = r.graph.version(picture);
+    if (std::exchange(drawn_into, version) != version) {
+      tracer->set_target(target);
+      if (surfaces) tracer->set_surfaces({&r.graph.image(surfaces->normals), &r.graph.image(surfaces->albedos)});
+    }
+    const app::Frame& f = r.frame;
+    tracer->draw({f.commands, target, f.camera, f.timer, f.index, f.seed, f.seconds, f.position_km, f.cut});
+  };
+  graph::Pass drawing{.name = pass, .changed = [](const app::Frame&) { return true; }, .times_itself = true};
+  drawing.steps.push_back(std::move(step));
+  builder.graph.add(std::move(drawing));
+  builder.explain = [tracer] { return tracer->explain(); };
+}
+
 app::Effect paths() {
-  app::Effect effect = app::drawn_by(
-      "paths", 7, path_knobs(), [](const app::Context& context) { return std::make_unique<GroundTruth>(context); });
+  app::Effect effect{.name = "paths", .chapter = 7, .knobs = path_knobs()};
+  effect.declare = [](app::Builder& builder, app::Board& board) { add_paths(builder, board, "program"); };
   effect.key = [](const Scene& scene, const Settings&) { return air_key(scene) + fmt::format(" {}", scene.sun.disc); };
   return effect;
 }

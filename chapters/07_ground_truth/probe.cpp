@@ -1,4 +1,5 @@
-// Single rays: paths are spread over (ray, block), summed in float32 within a block of a few and in double beyond.
+// Single rays. An invocation traces one block of a few paths of one ray and sums them in float32; the host sums the
+// blocks in double.
 #include "chapters/05_single_scattering/probe.hpp"
 
 #include <algorithm>
@@ -12,7 +13,7 @@ namespace {
 
 constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 constexpr VkDescriptorType kUniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
-constexpr int64_t kInvocations = 1 << 18;  // of one dispatch: 12 MiB of results
+constexpr int64_t kInvocations = 1 << 18;  // of one dispatch; they write 12 MiB of results
 
 struct ProbePush {
   int32_t first_ray, blocks, samples, invocations;
@@ -67,7 +68,7 @@ std::vector<app::ProbeResult> GroundTruth::probe(std::span<const app::ProbeRay> 
       sum.unfinished += result[0].w;
     }
   };
-  // Whole rays at a time where their blocks fit, else one ray a few blocks at a time.
+  // A dispatch takes whole rays where their blocks fit, else one ray and as many of its blocks as fit.
   const int rays_at_once = static_cast<int>(std::max<int64_t>(1, kInvocations / plan.count));
   for (int first = 0; first < static_cast<int>(rays.size()); first += rays_at_once) {
     const int count = std::min(rays_at_once, static_cast<int>(rays.size()) - first);

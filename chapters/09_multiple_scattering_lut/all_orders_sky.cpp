@@ -62,9 +62,11 @@ std::vector<app::ProbeResult> probe_all_orders(const app::Context& context, std:
     step.bindings.push_back({"Results", probe.results});
     step.record = [context = builder.context, range = probe.range,
                    has_table = board.find<MultipleScatteringTable>() != nullptr](const graph::Recorder& r) {
-      // Chapter 05's shader reads the count from the second component, this chapter's from the third.
-      const int table_steps = has_table ? context.settings.integer("multiple_scattering.view_steps") : range->count;
-      r.push(MarchSteps{context.settings.integer("view.steps"), table_steps, range->count, 0});
+      const int view_steps = context.settings.integer("view.steps");
+      if (has_table)
+        r.push(MarchSteps{view_steps, context.settings.integer("multiple_scattering.view_steps"), range->count, 0});
+      else
+        r.push(MarchProbePush{view_steps, range->count, {}});
       r.dispatch(static_cast<uint32_t>(range->count + 63) / 64);
     };
     add_probe_pass(builder, probe, std::move(step));

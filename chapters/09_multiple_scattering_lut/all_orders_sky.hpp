@@ -8,7 +8,7 @@ namespace welkin {
 // The march of all orders, or of the first order where there is no table: shader, constants and bindings except for the
 // output. Later chapters fall back on it. shader: "image" or "probe".
 graph::Step all_orders_step(const app::Context& context, app::Board& board, const std::string& shader);
-// Its push constants: steps of both marches.
+// Its push constants where there is a table: steps of both marches, and the number of rays of a probe.
 struct MarchSteps {
   int32_t view_steps, table_steps, count, unused;
 };

@@ -93,7 +93,7 @@ AerialPush aerial_push(const app::Context& context) {
 }
 
 // [inputs]
-// Where there is no table or no shadow, the cover map stands in for an image that is not read.
+// Where there is no table, or no shadow map, the cover map is bound in its place; the shader does not read it.
 graph::Step aerial_step(const app::Context& context, app::Board& board, const std::string& shader) {
   const Settings& settings = context.settings;
   const AirBlock& air = board.get<AirBlock>("the air");

@@ -10,8 +10,8 @@ namespace welkin {
 
 std::vector<Knob> froxel_knobs();  // aerial.method, froxels.*
 
-// On the board: in-scattered light and extinction per km, each the mean up to a slice's end; in one image where the
-// channels share an extinction.
+// On the board: in-scattered light and extinction per km, each the mean of the air up to a slice's end. Where the
+// channels share an extinction, both are in one image.
 struct Froxels {
   graph::Resource in_scattering, extinction;
 };
@@ -22,7 +22,7 @@ struct AerialPush {
 };
 AerialPush aerial_push(const app::Context& context);
 
-// What the passes of this chapter that march or look up the air read, and the constants they share.
+// A step with the bindings and constants that all passes of this chapter share which march or look up the air.
 graph::Step aerial_step(const app::Context& context, app::Board& board, const std::string& shader);
 
 // Pass "aerial perspective": fills the froxels when camera, sun, air or shadows have changed.

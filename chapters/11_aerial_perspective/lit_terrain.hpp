@@ -5,7 +5,7 @@
 
 namespace welkin {
 
-// Pass "compose": puts the terrain before the picture so far. A scene without terrain keeps that picture.
+// Pass "compose": draws the terrain over the picture so far. A scene without terrain keeps that picture.
 app::Effect lit_terrain();
 
 }  // namespace welkin

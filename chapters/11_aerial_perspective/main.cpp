@@ -1,5 +1,5 @@
 // Chapter 11, aerial perspective: terrain under the sky of chapter 10, and the air in front of it. Mountains turn blue
-// with distance; at sunset they lay their shadows through the haze.
+// with distance; at sunset they cast shadows through the haze.
 #include "chapters/02_window/window.hpp"
 #include "chapters/06_display/display.hpp"
 #include "chapters/08_transmittance_lut/transmittance_lut.hpp"
@@ -34,7 +34,7 @@ int main(int argc, char** argv) {
       .extra_bytes = 34 << 20,
       .effects = {air(), transmittance_table(), multiple_scattering_table(), sky_view(), sky(), terrain(), signs(),
                   terrain_shadows(), aerial_perspective(), lit_terrain(), exposure(), display()},
-      .probe = probe_sky};  // a ray of a probe has no place on the map: it sees chapter 10's sky
+      .probe = probe_sky};  // a probe's ray has no place on the map: it sees chapter 10's sky
   return app::run(argc, argv, chapter);
   // [/chapter]
 }

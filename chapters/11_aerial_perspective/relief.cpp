@@ -15,14 +15,14 @@ namespace welkin {
 namespace {
 
 constexpr VkImageUsageFlags kMapUsage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-constexpr double kEyes_km = 0.002;  // a camera in a hill is lifted to this height above it
+constexpr double kEyes_km = 0.002;  // a camera inside a hill is lifted to this height above the ground
 
 struct ShadowPush {
   glm::vec4 sun;
 };
 
-// Shares as halves: a driver may filter 8-bit numbers to 8 bits, and a step of 1/255 of snow among grass is 3 % of its
-// light.
+// Shares of cover as 16-bit floats: a driver may round what it filters from 8-bit texels to 8 bits, and a step of 1/255
+// in the share of snow changes the light from grass by 3 %.
 std::vector<uint64_t> halves(const std::vector<std::array<uint8_t, 4>>& cover) {
   std::vector<uint64_t> texels;
   texels.reserve(cover.size());
@@ -30,14 +30,14 @@ std::vector<uint64_t> halves(const std::vector<std::array<uint8_t, 4>>& cover) {
   return texels;
 }
 
-// The sun in the global frame, where it does not turn as the camera moves.
+// Direction to the sun in the global frame, where it does not change as the camera moves.
 glm::dvec3 global_sun(const app::Frame& frame, double ground_radius_km) {
   const app::LocalFrame at = app::local_frame({.position_km = frame.position_km}, ground_radius_km);
   const glm::dvec3 local(frame.camera.sun);
   return glm::normalize(at.east * local.x + at.north * local.y + at.up * local.z);
 }
 
-// Straight up: directions stay what they are.
+// Lifts a camera that is inside a hill straight up: its local frame, and with it all directions, stay the same.
 void lift_out_of_ground(const TerrainMap& map, double ground_radius_km, CameraRays& camera, glm::dvec3& position_km) {
   const app::CameraPose pose{.position_km = position_km};
   const glm::dvec3 up = app::local_frame(pose, ground_radius_km).up;
@@ -53,7 +53,7 @@ app::Wanted terrain_wanted(const Scene& scene) {
   return {scene.terrain.has_value(), scene.terrain ? "[terrain] in scene" : "no [terrain] in scene"};
 }
 
-// Everything the maps are made from; of a file also when it was written.
+// Everything the maps are made from, as text; for a file also the time it was written.
 std::string key_of_maps(const Scene& scene) {
   const Terrain& t = *scene.terrain;
   std::error_code missing;
@@ -63,7 +63,7 @@ std::string key_of_maps(const Scene& scene) {
                      t.size, t.seed, scene.planet.ground_radius_km);
 }
 
-// What both passes that walk over the maps know of them, and the maps.
+// A step with the maps and their constants, for the two passes that walk over them.
 graph::Step walking(const TerrainMaps& maps, double ground_radius_km, const char* shader) {
   return {.shader = shader,
           .constants = {{"GROUND_RADIUS_KM", static_cast<float>(ground_radius_km)},
@@ -136,7 +136,7 @@ gpu::Image uploaded_map(const gpu::Device& device, const char* name, VkFormat fo
 }
 
 // [maps]
-// The maps on the device; of the map itself only heights stay, for where the camera stands.
+// Puts the maps on the device. The CPU keeps only the heights, which keep the camera out of the ground.
 static TerrainMaps upload_maps(app::Builder& builder) {
   const app::Context& context = builder.context;
   const auto add = [&](const char* name, VkFormat format, int width, int height, const auto& texels) {

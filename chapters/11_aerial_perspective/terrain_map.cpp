@@ -82,7 +82,7 @@ double hill(double x, double y, double extent_km, uint32_t seed) {
 }
 // [/hills]
 
-// Rows in as many parts as there are processors: half of what a start takes is making hills.
+// Fills the rows on all processors: making hills takes half of the time a start takes.
 template <typename Fill>
 void in_parallel(int rows, const Fill& fill) {
   const int parts = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 16);
@@ -112,7 +112,7 @@ std::vector<float> read_heights(const Terrain& terrain, int& size) {
   constexpr const char* accepted = "accepted is a square 16-bit grayscale PNG of 2 to 4096 samples a side";
   Image16 picture;
   try {
-    picture = image::read_png16(terrain.height_map);  // 8 bits are refused: a map of 256 steps is a staircase
+    picture = image::read_png16(terrain.height_map);  // 8 bits are refused: slopes would be stairs
   } catch (const Error& error) {
     fail("height map: {}; {}", one_line(error.what()), accepted);
   }
@@ -131,8 +131,8 @@ std::vector<float> read_heights(const Terrain& terrain, int& size) {
 // [/read]
 
 // [slopes_and_cover]
-// Slopes by central differences; cover from slope and height: rock where it is steep, snow high up, grass else, bare
-// ground towards the edge of the map, where it has to look like the sphere beyond.
+// Slopes by central differences; cover from slope and height: rock where it is steep, snow high up, grass elsewhere,
+// and bare ground towards the edge of the map, where it has to look like the sphere beyond.
 void add_slopes_and_cover(TerrainMap& map) {
   const int n = map.size;
   const double texel_km = map.extent_km / n;
@@ -193,7 +193,7 @@ HeightMaxima height_maxima(const TerrainMap& map) {
   const auto at = [&](int level, int i, int j) -> float& {
     return maxima.highest_km[static_cast<size_t>(row_of(level) + j) * maxima.width + i];
   };
-  // Two patches a side have three samples a side: 2 i - 1 to 2 i + 1.
+  // A node of level 1 is two patches wide: three samples a side, 2 i - 1 to 2 i + 1.
   for (int j = 0; j < n + 2; ++j)
     for (int i = 0; i < n + 2; ++i) {
       const float height =

@@ -3,7 +3,7 @@
 //
 // A map is a square of `size` x `size` samples around the scene's place: column i lies at x = ((i + 1/2)/size - 1/2)
 // extent to the east, row j at y = (1/2 - (j + 1/2)/size) extent to the north, so that row 0 is the north edge, as in a
-// picture. (x, y) are where the vertical through a point pierces the sphere, seen straight down on the tangent plane.
+// picture. (x, y) of a point: where its vertical pierces the sphere, projected straight down onto the tangent plane.
 #pragma once
 
 #include <array>
@@ -27,14 +27,14 @@ struct TerrainMap {
 // Throws Error: a file that is not a square 16-bit grayscale PNG of 2 to 4096 samples a side.
 TerrainMap make_terrain_map(const Terrain& terrain);
 
-// Throws Error if the map is wider than the planet's radius: towards the planet's edge, seen along the vertical of the
-// scene's place, a place of the map is no longer one of the ground.
+// Throws Error if the map is wider than the planet's radius: the map is projected along the vertical of the scene's
+// place, and so far out that projection no longer reaches the ground everywhere.
 void check_fits_planet(const Terrain& terrain, double ground_radius_km);
 
 // Maxima over squares of patches, for walks over the map (shaders/11_aerial_perspective/height_field.glsl). Patch (i,
-// j) is the square between samples i - 1 and i, j - 1 and j, the outer ones beyond the outer samples and level: size +
-// 1 a side. A node of level k holds the highest corner of 2^k x 2^k patches. Levels 1, 2, ... lie below each other in
-// one picture `width` wide, level k from row 2 width - (2 width >> (k - 1)) on.
+// j) is the square between samples i - 1 and i, j - 1 and j; the outermost patches lie beyond the outer samples and are
+// level, which makes size + 1 patches a side. A node of level k holds the highest corner of 2^k x 2^k patches. Levels
+// 1, 2, ... lie below each other in one picture `width` wide, level k from row 2 width - (2 width >> (k - 1)) on.
 struct HeightMaxima {
   int levels = 0;
   int width = 0, rows = 0;

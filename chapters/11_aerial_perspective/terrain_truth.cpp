@@ -14,12 +14,8 @@ struct SurfacesPush {
   glm::vec4 bare_albedo;
 };
 
-// On the board: what each pixel's ray meets first.
-struct SurfaceImages {
-  graph::Resource normals, albedos;
-};
-
 // [surfaces]
+// Offers SurfaceImages: what each pixel's ray meets first.
 app::Effect first_surfaces() {
   app::Effect effect{.name = "first surfaces", .chapter = 11};
   effect.wanted = [](const Scene& scene, const Settings&) -> app::Wanted {
@@ -51,30 +47,11 @@ app::Effect first_surfaces() {
 }
 // [/surfaces]
 
-// Chapter 07's tracer, its rays ending on those surfaces.
+// Chapter 07's path tracer, whose rays from the eye end on those surfaces.
 app::Effect traced_terrain() {
   app::Effect effect{.name = "paths", .chapter = 11};
   effect.declare = [](app::Builder& builder, app::Board& board) {
-    const SurfaceImages images = board.get<SurfaceImages>("first surfaces");
-    const graph::Resource picture = builder.picture(board, "picture");
-    const auto tracer = std::make_shared<GroundTruth>(builder.context, true);
-    graph::Pass pass{.name = "paths", .changed = [](const app::Frame&) { return true; }, .times_itself = true};
-    pass.steps.push_back(
-        {.accesses = {{images.normals, gpu::kComputeRead},
-                      {images.albedos, gpu::kComputeRead},
-                      {picture, gpu::kComputeWrite}},
-         .record = [tracer, images, picture, drawn_into = uint64_t{0}](const graph::Recorder& r) mutable {
-           const gpu::Image& target = r.graph.image(picture);
-           const uint64_t version = r.graph.version(picture);
-           if (std::exchange(drawn_into, version) != version) {
-             tracer->set_target(target);
-             tracer->set_surfaces({&r.graph.image(images.normals), &r.graph.image(images.albedos)});
-           }
-           const app::Frame& f = r.frame;
-           tracer->draw({f.commands, target, f.camera, f.timer, f.index, f.seed, f.seconds, f.position_km, f.cut});
-         }});
-    builder.graph.add(std::move(pass));
-    builder.explain = [tracer] { return tracer->explain(); };
+    add_paths(builder, board, "paths", board.get<SurfaceImages>("first surfaces"));
   };
   return effect;
 }

@@ -126,8 +126,8 @@ Renderer::Renderer(const Context& context, const Chapter& chapter, Program& prog
       pool_(gpu::create_command_pool(context.device)),
       commands_(gpu::allocate_commands(context.device, pool_)),
       timer_(context.device),
-      drawing_(context, chapter, program),
-      targets_(create_targets(context.device, size)) {
+      targets_(create_targets(context.device, size)),
+      drawing_(context, chapter, program) {
   drawing_.set_targets(targets_);
 }
 

@@ -69,8 +69,8 @@ class Renderer {
   gpu::CommandPool pool_;
   VkCommandBuffer commands_;
   gpu::Timer timer_;
-  Drawing drawing_;
   Targets targets_;
+  Drawing drawing_;  // into targets_
   double record_ms_ = 0.0;
 };
 

@@ -265,26 +265,4 @@ const gpu::Image* Composition::image(const std::string& name) const {
   return graph_.find_image(resource);
 }
 
-Effect drawn_by(const std::string& name, int chapter, std::vector<Knob> knobs,
-                std::function<std::unique_ptr<Program>(const Context&)> make) {
-  Effect effect{.name = name, .chapter = chapter, .knobs = std::move(knobs)};
-  effect.declare = [make](Builder& builder, Board& board) {
-    const std::shared_ptr<Program> program = make(builder.context);
-    const graph::Resource picture = builder.picture(board, "picture");
-    graph::Pass pass{.name = "program", .changed = [](const Frame&) { return true; }, .times_itself = true};
-    pass.steps.push_back(
-        {.accesses = {{picture, gpu::kComputeWrite}},
-         .record = [program, picture, drawn_into = uint64_t{0}](const graph::Recorder& r) mutable {
-           const gpu::Image& target = r.graph.image(picture);
-           const uint64_t version = r.graph.version(picture);
-           if (std::exchange(drawn_into, version) != version) program->set_target(target);
-           const Frame& f = r.frame;
-           program->draw({f.commands, target, f.camera, f.timer, f.index, f.seed, f.seconds, f.position_km, f.cut});
-         }});
-    builder.explain = [program] { return program->explain(); };
-    builder.graph.add(std::move(pass));
-  };
-  return effect;
-}
-
 }  // namespace welkin::app

@@ -81,8 +81,4 @@ class Composition : public Program {
   std::optional<graph::Resource> picture_;  // that is drawn into the target
 };
 
-// A program of its own as an effect: it draws the picture with passes, barriers and timestamps of its own.
-Effect drawn_by(const std::string& name, int chapter, std::vector<Knob> knobs,
-                std::function<std::unique_ptr<Program>(const Context&)> make);
-
 }  // namespace welkin::app

@@ -1,7 +1,7 @@
 // Chapter 01: every pixel of an image, each by one invocation.
 //
-// A dawn gradient in whole numbers 0..255, so that every driver must give the same bits: integer arithmetic is exact, and
-// so is one product of two floats, rounded as IEEE 754 says. (A float division may be off by 2.5 ulp in Vulkan.)
+// A dawn gradient in whole numbers 0..255, so that every driver must give the same bits: integer arithmetic is exact,
+// and so is one product of two floats, rounded as IEEE 754 says. (A float division may be off by 2.5 ulp in Vulkan.)
 #version 460
 // [workgroup]
 layout(local_size_x = 8, local_size_y = 8) in;

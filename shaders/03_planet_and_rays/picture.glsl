@@ -23,13 +23,14 @@ float checker(vec2 place_km, float cell_km) {
   return mod(cell.x + cell.y, 2.0);
 }
 
-// 0 … 1: checkerboards whose cells are powers of ten from 1 cm to 1000 km and stay wider than `footprint_km`. Three at a
-// time, so that the finest can fade out and the coarsest fade in before the next power of ten takes over.
+// 0 … 1: checkerboards whose cells are powers of ten from 1 cm to 1000 km and stay wider than `footprint_km`. Three are
+// added, so that the finest can fade out and the coarsest fade in before the next power of ten takes over.
 float ground_pattern(vec2 place_km, float footprint_km) {
   float level = clamp(log2(max(8.0 * footprint_km, 1.0e-9)) * 0.30103, -6.0, 1.999);
   float cell_km = pow(10.0, floor(level) + 1.0);
   float fade = smoothstep(0.4, 1.0, level - floor(level));
-  return 0.5 + 0.4 * (checker(place_km, cell_km) - 0.5) * (1.0 - fade) + 0.4 * (checker(place_km, 10.0 * cell_km) - 0.5) +
+  return 0.5 + 0.4 * (checker(place_km, cell_km) - 0.5) * (1.0 - fade) +
+         0.4 * (checker(place_km, 10.0 * cell_km) - 0.5) +
          0.4 * (checker(place_km, 100.0 * cell_km) - 0.5) * fade;
 }
 

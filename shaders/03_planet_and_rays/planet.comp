@@ -1,4 +1,4 @@
-// Chapter 03: a planet seen from half a metre to the Moon's distance, one ray per pixel, in the form of rays.form.
+// Chapter 03: a planet seen from half a metre to the Moon's distance, one ray per pixel; rays.form says how it is met.
 //
 // Views (debug.view): shaded; distance to the ground; error of that distance against double-float; the normal; the
 // altitude of the point that was hit, which should be 0. Strips at the bottom are the colour scales. Lengths in km.

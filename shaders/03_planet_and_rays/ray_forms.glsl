@@ -23,9 +23,9 @@ Chord chord_of_roots(float near_km, float far_km) {
 }
 
 // [naive]
-// As everyone writes it first: positions in a frame at the planet's centre, here with the camera above Zagreb (45.815 N,
-// 15.982 E). One unit in the last place of a position is 0.5 m, and three differences of nearly equal numbers follow: in c,
-// in b^2 - c, and in -b - sqrt(...).
+// As everyone writes it first: positions in a frame at the planet's centre, here with the camera above Zagreb
+// (45.815 N, 15.982 E). One unit in the last place of a position is 0.5 m, and three differences of nearly equal numbers
+// follow: in c, in b^2 - c, and in -b - sqrt(...).
 const vec3 PLACE_EAST = vec3(-0.275335353, 0.961348243, 0.000000000);
 const vec3 PLACE_NORTH = vec3(-0.689376192, -0.197441082, 0.696977392);
 const vec3 PLACE_UP = vec3(0.670037991, 0.191902516, 0.717093100);

@@ -39,10 +39,11 @@ float tangent_altitude(float ground_radius_km, float altitude_km, float mu, floa
 }
 // [/tangent_altitude]
 
-// Distance along a line between its tangent point and the altitude h: sqrt((R+h)^2 - b^2) = sqrt((h - h_p)(2R + h + h_p)).
-// 0 if the line does not go that low.
+// Distance along a line between its tangent point and the altitude h, 0 if the line does not go that low:
+// sqrt((R+h)^2 - b^2) = sqrt((h - h_p)(2R + h + h_p)).
 float half_chord(float ground_radius_km, float tangent_altitude_km, float altitude_km) {
-  return sqrt(max((altitude_km - tangent_altitude_km) * (2.0 * ground_radius_km + altitude_km + tangent_altitude_km), 0.0));
+  return sqrt(max((altitude_km - tangent_altitude_km) * (2.0 * ground_radius_km + altitude_km + tangent_altitude_km),
+                  0.0));
 }
 
 // [robust]

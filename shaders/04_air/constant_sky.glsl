@@ -4,8 +4,8 @@
 // is the true one: sigma = sum_i beta_i H_i / H. Along the view ray the optical depth to a point and from there to the
 // sun changes linearly if the shell is flat, from A at the near end to B at the far end, and then
 //   L = S integral_0^L exp(-(A + (B - A) t/L)) dt = S L exp(-min(A,B)) phi(|B - A|),   phi(x) = (1 - exp(-x))/x.
-// On the round shell it is not linear: the form is kept, with A and B taken from the round shell. The planet does not
-// shade its air: light comes through it as if it were air. Both are what chapter 05 mends. Units: km, 1/km.
+// On the round shell it is not linear: the form is kept, with A and B taken from the round shell. The planet casts no
+// shadow on its air: light passes through it as if it were air. Chapter 05 corrects both. Units: km, 1/km.
 #ifndef WELKIN_CONSTANT_SKY_GLSL
 #define WELKIN_CONSTANT_SKY_GLSL
 
@@ -21,7 +21,7 @@ float phi(float x) {
   return x < 0.05 ? 1.0 - x * (0.5 - x * (1.0 / 6.0 - x * (1.0 / 24.0))) : (1.0 - exp(-x)) / x;
 }
 
-// Mean of exp(-tau) while tau runs evenly from one optical depth to another: never exp of a positive number.
+// Mean of exp(-tau) while tau runs evenly from one optical depth to another. No argument of exp is positive.
 vec3 mean_transmittance(vec3 tau_a, vec3 tau_b) {
   vec3 low = min(tau_a, tau_b);
   vec3 span = abs(tau_b - tau_a);
@@ -29,8 +29,8 @@ vec3 mean_transmittance(vec3 tau_a, vec3 tau_b) {
 }
 // [/mean_transmittance]
 
-// Which phase functions are compiled in: PHASE_DETAIL 0 isotropic, 1 Rayleigh's for the molecules, 2 and Henyey-Greenstein
-// for the aerosol, 3 and the scene's for the aerosol, 4 and the anisotropy of the molecules.
+// Which phase functions are compiled in. PHASE_DETAIL 0: isotropic; 1: Rayleigh's for the molecules; 2: also
+// Henyey-Greenstein's for the aerosol; 3: the scene's for the aerosol instead; 4: also the anisotropy of the molecules.
 float molecule_phase(float one_minus_nu) {
   if (PHASE_DETAIL == 0) return isotropic_phase();
   if (PHASE_DETAIL == 4) return rayleigh_anisotropic_phase(one_minus_nu, AIR_DEPOLARIZATION);
@@ -45,7 +45,7 @@ float aerosol_phase(Atmosphere atmosphere, float one_minus_nu, float one_plus_nu
 
 struct ConstantSky {
   vec3 radiance;       // per unit solar irradiance
-  vec3 transmittance;  // of the air along the whole ray; 0 behind the ground is not included
+  vec3 transmittance;  // of the air along the whole ray, also where that ends on the ground
   float hits_ground;   // 1 if the ray ends on the ground
 };
 
@@ -53,9 +53,11 @@ struct ConstantSky {
 // [constant_sky]
 ConstantSky constant_sky(Atmosphere atmosphere, float altitude_km, vec3 view, vec3 sun) {
   float radius = atmosphere.ground_radius_km;
-  float thickness = HAS_RAYLEIGH ? atmosphere.rayleigh_scale_height_km : HAS_MIE ? atmosphere.mie_scale_height_km : atmosphere.ozone_half_width_km;
+  float thickness = HAS_RAYLEIGH ? atmosphere.rayleigh_scale_height_km
+                    : HAS_MIE    ? atmosphere.mie_scale_height_km
+                                 : atmosphere.ozone_half_width_km;
   float shell = min(thickness, atmosphere.top_km);
-  // Densities whose column over the shell is each constituent's own: exponential H, tent half width.
+  // Densities that give each constituent its true vertical column: H of an exponential, the half width of a tent.
   vec3 density = vec3(0.0);
   if (HAS_RAYLEIGH) density.x = atmosphere.rayleigh_scale_height_km / shell;
   if (HAS_MIE) density.y = atmosphere.mie_scale_height_km / shell;
@@ -69,7 +71,7 @@ ConstantSky constant_sky(Atmosphere atmosphere, float altitude_km, vec3 view, ve
   float mu_sun = sun.z;
   float one_minus_nu = one_minus_cosine(view, sun);
   float nu = 1.0 - one_minus_nu;
-  if (h > shell) {  // from outside: go to where the ray enters, and turn the zenith with it
+  if (h > shell) {  // from outside: go to where the ray enters; angles are from the zenith there
     float t = distance_to_shell_from_outside(radius, h, mu, sine, shell);
     if (t < 0.0) return sky;
     float r = radius + h, r_entry = radius + shell;
@@ -89,7 +91,9 @@ ConstantSky constant_sky(Atmosphere atmosphere, float altitude_km, vec3 view, ve
 
   vec3 source = vec3(0.0);
   if (HAS_RAYLEIGH) source += atmosphere.rayleigh_scattering * (density.x * molecule_phase(one_minus_nu));
-  if (HAS_MIE) source += atmosphere.mie_scattering * (density.y * aerosol_phase(atmosphere, one_minus_nu, one_minus_cosine(view, -sun)));
+  if (HAS_MIE)
+    source += atmosphere.mie_scattering *
+              (density.y * aerosol_phase(atmosphere, one_minus_nu, one_minus_cosine(view, -sun)));
   sky.radiance = source * way * mean_transmittance(sun_near, tau + sun_far);
   sky.transmittance = exp(-tau);
   if (ground) {

@@ -19,15 +19,17 @@ void main() {
   vec3 radiance = imageLoad(sky, pixel).xyz;
   // [disc]
   if (SUN_DISC) {
-    // Irradiance through the solid angle of a disc that is as bright everywhere, pi sin^2 a.
-    const vec3 bright = atmosphere.solar_irradiance / (3.14159265358979324 * sine_squared(atmosphere.sun_angular_radius));
+    // Radiance of a disc that is equally bright everywhere: irradiance / (pi sin^2 a).
+    const vec3 bright =
+        atmosphere.solar_irradiance / (3.14159265358979324 * sine_squared(atmosphere.sun_angular_radius));
     const vec2 horizon = horizon_at(atmosphere.ground_radius_km, camera.altitude_km);
     const SunInPixel disc = sun_in_pixel(camera, pixel, camera_direction(camera, pixel), atmosphere.sun_angular_radius);
     for (int i = 0; i < disc.side; ++i) {
       const SunRow row = sun_row(disc, i);
       for (int j = 0; j < disc.side; ++j) {
         const SunNode node = sun_node(disc, row, horizon, j);
-        radiance += bright * node.share * constant_sky(atmosphere, camera.altitude_km, node.view, camera.sun).transmittance;
+        radiance +=
+            bright * node.share * constant_sky(atmosphere, camera.altitude_km, node.view, camera.sun).transmittance;
       }
     }
   }

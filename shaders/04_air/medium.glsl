@@ -15,8 +15,8 @@ float ozone_density(Atmosphere atmosphere, float altitude_km) {
   return max(1.0 - abs(altitude_km - atmosphere.ozone_peak_km) * (1.0 / atmosphere.ozone_half_width_km), 0.0);
 }
 
-// The reciprocals are the same for every sample: a compiler takes them out of loops, divisions it may not.
-// (rayleigh, mie, ozone) relative to the ground's, to the ground's and to the peak's; 0 for what does not exist.
+// Densities (rayleigh, mie, ozone) relative to the ground, the ground and ozone's peak; 0 for what does not exist.
+// It multiplies by reciprocals, which a compiler may compute once before a loop; divisions it must leave inside.
 vec3 densities(Atmosphere atmosphere, float altitude_km) {
   vec3 density = vec3(0.0, 0.0, 0.0);
   if (HAS_RAYLEIGH) density.x = exp(altitude_km * (-1.0 / atmosphere.rayleigh_scale_height_km));
@@ -25,9 +25,10 @@ vec3 densities(Atmosphere atmosphere, float altitude_km) {
   return density;
 }
 
-// Extinction in 1/km from densities, or optical depth from columns in km. Constituents that do not exist have density 0.
+// Extinction in 1/km from densities, or optical depth from columns in km. What does not exist has density 0.
 vec3 extinction(Atmosphere atmosphere, vec3 density) {
-  return atmosphere.rayleigh_scattering * density.x + atmosphere.mie_extinction * density.y + atmosphere.ozone_absorption * density.z;
+  return atmosphere.rayleigh_scattering * density.x +
+         atmosphere.mie_extinction * density.y + atmosphere.ozone_absorption * density.z;
 }
 
 float mie_phase(Atmosphere atmosphere, float one_minus_nu, float one_plus_nu) {

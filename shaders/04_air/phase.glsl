@@ -3,7 +3,7 @@
 // They take one_minus_nu = 1 - nu, nu the cosine between the two directions of propagation (forward: nu = 1), because
 // in float32 1 + g^2 - 2 g nu cancels for g near 1, while (1-g)^2 + 2 g (1-nu) does not. Domain: one_minus_nu in
 // [0, 2] (rounding may pass 2 a little), |g| <= 1; at |g| = 1 the value is that of the limit, 0, in every direction but
-// the lobe's own. A strong backward lobe wants the same care at the other end: ask for (1 - a.(-b), -g).
+// the lobe's own. A strong backward lobe cancels near nu = -1 instead: there, pass (1 - a.(-b), -g).
 #ifndef WELKIN_PHASE_GLSL
 #define WELKIN_PHASE_GLSL
 
@@ -19,14 +19,14 @@ float one_minus_cosine(vec3 a, vec3 b) {
 float isotropic_phase() { return 0.079577471545947668; }
 
 // [rayleigh]
-// 3/(16 pi) (1 + nu^2): a dipole that follows the field.
+// 3/(16 pi) (1 + nu^2): the mean pattern of dipoles that follow unpolarised light.
 float rayleigh_phase(float one_minus_nu) {
   float nu = 1.0 - one_minus_nu;
   return 0.059683103659460751 * (1.0 + nu * nu);
 }
 
-// 3/(16 pi (1 + 2 c)) ((1 + 3 c) + (1 - c) nu^2), c = rho/(2 - rho): molecules that are not round scatter a share rho of
-// depolarised light (Chandrasekhar 1960, section 18). rho = 0.035 gives 0.7629 (1 + 0.932 nu^2)/(4 pi).
+// 3/(16 pi (1 + 2 c)) ((1 + 3 c) + (1 - c) nu^2), c = rho/(2 - rho): molecules that are not round scatter a share rho
+// of depolarised light (Chandrasekhar 1960, section 18). rho = 0.035 gives 0.7629 (1 + 0.932 nu^2)/(4 pi).
 float rayleigh_anisotropic_phase(float one_minus_nu, float depolarization) {
   float nu = 1.0 - one_minus_nu;
   float c = depolarization / (2.0 - depolarization);
@@ -70,7 +70,7 @@ float cornette_shanks_phase(float one_minus_nu, float g) {
   return draine_phase(one_minus_nu, g, 1.0);
 }
 
-// Two Henyey-Greenstein lobes, the second with weight in [0, 1]. Both have 1 - g^2 above.
+// Two Henyey-Greenstein lobes, the second with weight in [0, 1]. Both have 1 - g^2 in the numerator.
 float double_hg_phase(float one_minus_nu, float one_plus_nu, float g, float second_g, float second_weight) {
   // Not mix(): a driver may compute a + w (b - a), which for w near 1 and a far larger than b has lost b.
   return henyey_greenstein_lobe(one_minus_nu, one_plus_nu, g) * (1.0 - second_weight) +

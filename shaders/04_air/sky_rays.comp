@@ -1,7 +1,7 @@
 // The constant-density sky along many rays: one invocation per vertex of the sky sphere, or per ray of --probe.
 //
-// A vertex is one vec4 (unit direction); camera and sun are those of the frame. A probe's ray is two: (view, altitude in
-// km) and (sun, 0), and its result two: radiance and transmittance.
+// A vertex is one vec4 (unit direction); camera and sun are those of the frame. A probe's ray is two vec4, (view,
+// altitude in km) and (sun, 0), and so is its result: radiance and transmittance.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "04_air/variant.glsl"

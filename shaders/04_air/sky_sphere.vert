@@ -1,7 +1,7 @@
 // A vertex of the sky sphere: where its direction falls in the picture, and the colour the compute pass gave it.
 //
-// The camera's right and up carry tan(fov/2), so a direction d lies at x = d.right/|right|^2 and y = d.up/|up|^2 in units
-// of d.forward. The sphere has no size: w = d.forward, and z is any depth in front of the eye.
+// The camera's right and up carry tan(fov/2), so a direction d lies at x = d.right/|right|^2 and y = d.up/|up|^2 in
+// units of d.forward. The sphere has no size: w = d.forward, and z is any depth in front of the eye.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interop/camera.h"

@@ -1,18 +1,20 @@
 // What a pixel sees of the sun's disc. Pure functions, also valid C++; radians, km.
 //
-// A pixel is a rectangle of the image plane, and its value the mean of the light over that rectangle: a disc smaller than a
-// pixel then sends the picture the same light wherever it falls, and pictures of every size agree. A ray through the
-// pixel's centre would miss it, or take it for all of the pixel.
+// A pixel is a rectangle of the image plane, and its value the mean of the light over that rectangle: a disc smaller
+// than a pixel then sends the picture the same light wherever it falls, and pictures of every size agree. A single ray
+// through the pixel's centre would either miss such a disc or count it as filling the pixel.
 //
-// In a plane at distance 1 in front of the eye the disc of angular radius a around s = (x, y, z), z forward, is an ellipse:
+// In a plane at distance 1 in front of the eye the disc of angular radius a around s = (x, y, z), z forward, is an
+// ellipse:
 //   centre (x, y) z / q          q = z^2 - sin^2 a  (> 0: the disc lies wholly in front)
 //   half height  b = sin a sqrt(cos^2 a - x^2) / q
 //   its row at v half heights has the middle x y b v / (cos^2 a - x^2) and the half width sqrt(1 - v^2) c,
 //   c = sin a cos a / sqrt(q (cos^2 a - x^2)).
-// In (u, v), a row's share and a height's, it is the unit circle, and mu_s, the cosine at the sun's surface, is exactly
+// With u in units of c along a row and v in units of b, it is the unit circle, and mu_s, the cosine at the sun's
+// surface, is exactly
 //   mu_s^2 = (1 - u^2 - v^2) cos^2 a / (q |P|^2),      P the point of the plane, |P|^2 = 1 + X^2 + Y^2.
-// Steps are equal in p and t with v = p sqrt(2 - p^2), u = w t sqrt(2 - t^2), w = sqrt(1 - v^2) = 1 - p^2 half a row's width:
-// then sqrt(1 - u^2 - v^2) = (1 - p^2)(1 - t^2), and light that fades towards the limb has no edge left.
+// Steps are equal in p and t with v = p sqrt(2 - p^2), u = w t sqrt(2 - t^2), w = sqrt(1 - v^2) = 1 - p^2 half a row's
+// width. Then sqrt(1 - u^2 - v^2) = (1 - p^2)(1 - t^2), so that light that fades towards the limb is smooth in p and t.
 #ifndef WELKIN_SUN_IN_PIXEL_GLSL
 #define WELKIN_SUN_IN_PIXEL_GLSL
 
@@ -41,13 +43,13 @@ float sine_squared(float angle) {
   return a2 * (1.0 - a2 * (0.33333333333333333 - a2 * 0.044444444444444444));
 }
 
-// view: camera_direction() of that pixel. Domain: 0 < angular_radius <= 0.2. A disc that reaches behind the eye is not seen.
+// view: camera_direction() of that pixel. Domain: 0 < angular_radius <= 0.2. No disc is seen that reaches behind the eye.
 SunInPixel sun_in_pixel(CameraRays camera, ivec2 pixel, vec3 view, float angular_radius) {
   SunInPixel disc;
   disc.side = 0;
   vec2 half_plane = vec2(length(camera.right), length(camera.up));
   vec2 half_pixel = half_plane / vec2(float(camera.size.x), float(camera.size.y));
-  // Almost every pixel ends here: no point of it is further from its middle than half its diagonal.
+  // Almost every pixel returns here: no point of it is further from its centre than half_pixel.x + half_pixel.y.
   float reach = angular_radius + half_pixel.x + half_pixel.y;
   if (2.0 * one_minus_cosine(view, camera.sun) > reach * reach) return disc;
 
@@ -75,17 +77,18 @@ SunInPixel sun_in_pixel(CameraRays camera, ivec2 pixel, vec3 view, float angular
   disc.per_pixel = size.x * size.y / (4.0 * half_pixel.x * half_pixel.y);
   disc.mu_scale = sqrt(cosine2 / q);
   vec2 wide = disc.high - disc.low;
-  // Only rows that meet both the circle and the rectangle.
+  // Keeps only rows that meet both the circle and the rectangle.
   disc.low.y = max(disc.low.y, -1.0);
   disc.high.y = min(disc.high.y, 1.0);
-  vec2 moved = vec2(min(disc.shift * disc.low.y, disc.shift * disc.high.y), max(disc.shift * disc.low.y, disc.shift * disc.high.y));
+  vec2 moved = vec2(min(disc.shift * disc.low.y, disc.shift * disc.high.y),
+                    max(disc.shift * disc.low.y, disc.shift * disc.high.y));
   float nearest_u = max(max(disc.low.x - moved.y, moved.x - disc.high.x), 0.0);
   if (disc.low.y >= disc.high.y || nearest_u >= 1.0) return disc;
   float tallest = sqrt((1.0 - nearest_u) * (1.0 + nearest_u));
   disc.low.y = max(disc.low.y, -tallest);
   disc.high.y = min(disc.high.y, tallest);
   if (disc.low.y >= disc.high.y) return disc;
-  // Steps of an eighth of the radius: many where the whole disc is a point of the picture, two where it is large.
+  // Steps of an eighth of the radius: 12 where the whole disc is smaller than the pixel, 2 where it is large.
   disc.side = clamp(int(ceil(8.0 * max(wide.x, wide.y))), 2, 12);
   return disc;
 }
@@ -121,7 +124,8 @@ SunRow sun_row(SunInPixel disc, int i) {
   row.height = step_width(p) * p_step;
   row.half_width = max(1.0 - p * p, 1.0e-6);
   row.t_begin = to_steps(clamp((disc.low.x - disc.shift * row.v) / row.half_width, -1.0, 1.0));
-  row.t_step = (to_steps(clamp((disc.high.x - disc.shift * row.v) / row.half_width, -1.0, 1.0)) - row.t_begin) / float(disc.side);
+  row.t_step = (to_steps(clamp((disc.high.x - disc.shift * row.v) / row.half_width, -1.0, 1.0)) - row.t_begin) /
+               float(disc.side);
   return row;
 }
 
@@ -137,14 +141,15 @@ SunNode sun_node(SunInPixel disc, SunRow row, vec2 horizon, int j) {
   node.view = point * nearness;
   node.mu = min(from_limb * disc.mu_scale * nearness, 1.0);
   node.share = max(width, 0.0) * row.height * disc.per_pixel;
-  // The horizon: the part of the node's piece above it, and its middle. up: the way away from the horizon.
+  // The horizon cuts the node's piece: the part above it counts, seen from its middle. up: unit, away from the horizon.
   float sine = max(sqrt(node.view.x * node.view.x + node.view.y * node.view.y), 1.0e-20);
   float lean = -horizon.x / sine;
   vec3 up = vec3(node.view.x * lean, node.view.y * lean, horizon.y);
   float above = dot(up, node.view);
-  // A piece is as wide as its row and leans with the edges of those above and below: u = w across, dw / dv = -v / w.
+  // Pieces lean, since rows get shorter towards the limb: u = w across, and dw / dv = -v / w.
   float lean_u = -row.v * across / row.half_width;
-  float height = (abs(dot(up, disc.along_u)) * width + abs(dot(up, disc.along_v + disc.along_u * lean_u)) * row.height) * nearness;
+  float height = (abs(dot(up, disc.along_u)) * width +
+                  abs(dot(up, disc.along_v + disc.along_u * lean_u)) * row.height) * nearness;
   float seen = clamp(above + 0.5 * height, 0.0, height);
   if (seen < height) {
     node.share *= seen / height;

@@ -11,8 +11,8 @@ struct MarchState {
 };
 
 // [gauss4_up_to]
-// Row by row, the integrals from 0 to each of the four Gauss nodes of the cubic through four values at the nodes (the
-// Butcher matrix of the Gauss method of order eight).
+// Row i: weights of the integral, from 0 to Gauss node i, of the cubic through four values at the nodes (the Butcher
+// matrix of the Gauss method of order eight).
 const vec4 kGauss4UpTo[4] = {
     vec4(0.086963711284363, -0.026604180084999, 0.012627462689405, -0.003555149685796),
     vec4(0.188118117499868, 0.163036288715637, -0.027880428602471, 0.006735500594538),
@@ -21,16 +21,16 @@ const vec4 kGauss4UpTo[4] = {
 // [/gauss4_up_to]
 
 // [panel]
-// Columns (rayleigh, mie) from a panel's begin to its node i, from the densities at its four nodes. A panel over many scale
-// heights defeats the polynomial, which then dips below zero and would let light through: `floor_of`, half of what the
-// weights alone say, is what a resolved panel never reaches.
+// Columns (rayleigh, mie) from a panel's begin to its node i, from the densities at its four nodes. On a panel of many
+// scale heights the cubic dips below zero, and light would come through; `floor_of`, half of what the weights alone
+// give, prevents that. A panel that resolves the air stays above it.
 vec2 column_inside(vec4 rayleigh, vec4 mie, int i, vec2 floor_of) {
   return max(vec2(dot(rayleigh, kGauss4UpTo[i]), dot(mie, kGauss4UpTo[i])), floor_of);
 }
 
-// One panel of four Gauss nodes over counts [x_a, x_b]. Columns up to each node come from the panel's own densities, by
-// the integrals of their interpolating polynomial, so that the whole panel has one order. The nodes are the components
-// of a vec4, not elements of an array: registers, not memory.
+// One panel of four Gauss nodes over counts [x_a, x_b]. Columns up to each node are integrals of the polynomial through
+// the panel's own densities, so that they are of the same order as the panel. The nodes are components of a vec4 and
+// not elements of an array, so that they stay in registers.
 MarchState march_panel(Atmosphere atmosphere, AirRay ray, Line line, ScaleCount count, ScatteringTowardsEye scattering,
                     MarchState before, float x_a, float x_b) {
   float dx = x_b - x_a;
@@ -83,7 +83,7 @@ vec2 shadow_interval(AirRay ray, float ground_radius_km) {
   float root_2 = abs(q) > 0.0 ? c / q : root_1;
   float enter = min(root_1, root_2);
   float leave = max(root_1, root_2);
-  // Only beyond the planet's centre is it dark: r mu_sun + t nu < 0.
+  // It is dark only on the far side of the planet's centre, seen from the sun: r mu_sun + t nu < 0.
   float crossing = -r * ray.mu_sun / (abs(ray.nu) > 1.0e-20 ? ray.nu : 1.0e-20);
   if (ray.nu > 0.0) leave = min(leave, crossing);
   if (ray.nu < 0.0) enter = max(enter, crossing);
@@ -107,8 +107,8 @@ struct SourceEstimate {
   vec3 column;        // from the eye to the cell's end
 };
 
-SourceEstimate source_estimate(Atmosphere atmosphere, AirRay ray, Line line, ScaleCount count, ScatteringTowardsEye scattering,
-                               vec3 column, float x, float dx) {
+SourceEstimate source_estimate(Atmosphere atmosphere, AirRay ray, Line line, ScaleCount count,
+                               ScatteringTowardsEye scattering, vec3 column, float x, float dx) {
   float radius_km = atmosphere.ground_radius_km;
   CountedPoint point = point_at_count(count, ray, line, x);
   vec3 density = densities(atmosphere, point.altitude_km) * point.dt_dx;
@@ -116,7 +116,8 @@ SourceEstimate source_estimate(Atmosphere atmosphere, AirRay ray, Line line, Sca
   Line light = line_through(radius_km, point.altitude_km, mu_sun, sqrt((1.0 - mu_sun) * (1.0 + mu_sun)));
   light.tangent_km = max(light.tangent_km, mu_sun < 0.0 ? 0.0 : light.tangent_km);
   vec3 sun = vec3(0.0, 0.0, 0.0);
-  if (HAS_RAYLEIGH) sun.x = exponential_column_estimate(light, point.altitude_km, mu_sun, atmosphere.rayleigh_scale_height_km);
+  if (HAS_RAYLEIGH)
+    sun.x = exponential_column_estimate(light, point.altitude_km, mu_sun, atmosphere.rayleigh_scale_height_km);
   if (HAS_MIE) sun.y = exponential_column_estimate(light, point.altitude_km, mu_sun, atmosphere.mie_scale_height_km);
   SourceEstimate result;
   vec3 tau = extinction(atmosphere, column + density * (0.5 * dx) + max(sun, vec3(0.0, 0.0, 0.0)));
@@ -131,7 +132,7 @@ const int kMaxCells = 32;          // cells of the estimate that places the pane
 const float kUnseen = 1.0e-4;      // light below this share of the peak, in every channel, is left out at the ends
 const float kDim = 3.0e-3;         // share of the peak below which light asks for fewer nodes
 const float kSlopeWeight = 0.4;    // nodes asked for per unit of optical depth, relative to those per count
-const float kLeastWeight = 0.6;    // nodes that even darkness between two bright stretches asks for
+const float kLeastWeight = 0.6;    // nodes that even a dark stretch between two bright ones asks for
 
 // Nodes that a cell asks for. share: its light over the peak's; slope: change of the largest optical depth per count.
 float cell_weight(vec3 share, float slope, float width) {
@@ -164,7 +165,7 @@ LitInterval lit_between(float begin, float end, int first_cell, int cells) {
 }
 
 // [lit_cells]
-// The ray by counts, and what of it the sun reaches: before the planet's shadow, and behind it.
+// The ray's ends as counts, and the intervals of it that the sun reaches: before the planet's shadow, and behind it.
 struct LitCells {
   ScaleCount count;
   float x_begin;
@@ -187,7 +188,8 @@ LitCells lit_cells(Atmosphere atmosphere, AirRay ray, Line line, int cells) {
   }
   vec2 shadow = shadow_interval(ray, radius_km);
   bool has_shadow = shadow.y > shadow.x;
-  float x_enter = has_shadow ? clamp(count_along(along.count, line, ray, shadow.x), along.x_begin, along.x_end) : along.x_end;
+  float x_enter =
+      has_shadow ? clamp(count_along(along.count, line, ray, shadow.x), along.x_begin, along.x_end) : along.x_end;
   float x_leave = has_shadow ? clamp(count_along(along.count, line, ray, shadow.y), x_enter, along.x_end) : along.x_end;
   bool both = x_enter > along.x_begin && along.x_end > x_leave;
   along.lit[0] = lit_between(along.x_begin, x_enter, 0, both ? cells / 2 : cells);
@@ -195,16 +197,18 @@ LitCells lit_cells(Atmosphere atmosphere, AirRay ray, Line line, int cells) {
   return along;
 }
 
-// An estimate in closed form looks at each cell. Cells at the ends of an interval that hold less than `unseen` of the peak in
-// every channel are left out; the others ask for nodes: evenly in scale heights where there is light, more of them where its
-// optical depth changes fast, fewer where it is below a few thousandths of the peak.
-LitCells weighted_cells(Atmosphere atmosphere, AirRay ray, Line line, ScatteringTowardsEye scattering, LitCells along, float unseen) {
+// Estimates the light of each cell in closed form. Cells at the ends of an interval that hold less than `unseen` of the
+// peak in every channel are left out; the others ask for nodes: evenly in scale heights where there is light, more
+// where its optical depth changes fast, fewer where it is below a few thousandths of the peak.
+LitCells weighted_cells(Atmosphere atmosphere, AirRay ray, Line line, ScatteringTowardsEye scattering, LitCells along,
+                        float unseen) {
   vec4 seen[kMaxCells];  // xyz: light per count; w: change of the largest optical depth per count
   vec3 peak = vec3(1.0e-37, 1.0e-37, 1.0e-37);
   vec3 column = vec3(0.0, 0.0, 0.0);
   for (int k = 0; k < 2; k++) {
     LitInterval lit = along.lit[k];
-    if (lit.last_cell >= lit.first_cell && lit.begin > along.x_begin) column = columns_to_count(atmosphere, ray, line, along.count, lit.begin);
+    if (lit.last_cell >= lit.first_cell && lit.begin > along.x_begin)
+      column = columns_to_count(atmosphere, ray, line, along.count, lit.begin);
     float tau_before = 0.0;
     for (int j = lit.first_cell; j <= lit.last_cell; j++) {
       float x = lit.begin + lit.width * (float(j - lit.first_cell) + 0.5);
@@ -234,24 +238,27 @@ LitCells weighted_cells(Atmosphere atmosphere, AirRay ray, Line line, Scattering
 // [/lit_cells]
 
 // [adapted_march]
-// The march of the adapted rule: panels share the lit cells by the nodes these ask for, four Gauss nodes integrate each
-// panel, and what lies before an interval enters by its columns alone.
-// The whole ray's transmittance is a quadrature of its own, done only if wanted (1 otherwise).
-RayLight adapted_march(Atmosphere atmosphere, AirRay ray, ScatteringTowardsEye scattering, int view_steps, bool with_transmittance) {
+// The march of the adapted rule: panels divide the lit cells so that each gets the same number of the nodes asked for,
+// and four Gauss nodes integrate each panel. What lies before an interval counts by its columns alone. The whole ray's
+// transmittance is a quadrature of its own, done only if wanted (1 otherwise).
+RayLight adapted_march(Atmosphere atmosphere, AirRay ray, ScatteringTowardsEye scattering, int view_steps,
+                       bool with_transmittance) {
   Line line = line_through(atmosphere.ground_radius_km, ray.altitude_km, ray.mu, ray.sine);
   int panels = max((view_steps + 3) / 4, 1);
   LitCells along = lit_cells(atmosphere, ray, line, clamp(2 * panels, 8, kMaxCells));
-  // With more panels the ends matter sooner: what is left out must shrink with the error.
-  along = weighted_cells(atmosphere, ray, line, scattering, along, kUnseen * min(1.0, 512.0 / float(panels * panels * panels)));
+  // More panels make a smaller error, and what is left out at the ends must shrink with it.
+  along = weighted_cells(atmosphere, ray, line, scattering, along,
+                         kUnseen * min(1.0, 512.0 / float(panels * panels * panels)));
 
-  float ozone_begin = ozone_from_tangent(atmosphere, line, ray.altitude_km, (atmosphere.ground_radius_km + ray.altitude_km) * ray.mu);
+  float ozone_begin = ozone_from_tangent(atmosphere, line, ray.altitude_km,
+                                         (atmosphere.ground_radius_km + ray.altitude_km) * ray.mu);
   RayLight result;
   result.radiance = vec3(0.0, 0.0, 0.0);
   int panels_left = panels;
   for (int k = 0; k < 2; k++) {
     LitInterval lit = along.lit[k];
     if (lit.last_seen < lit.first_seen) continue;
-    // The interval's part of the panels.
+    // The interval's share of the panels, by its weight.
     int lit_panels = panels_left;
     if (k == 0 && along.lit[1].weight > 0.0) {
       float share = along.lit[0].weight / (along.lit[0].weight + along.lit[1].weight);
@@ -262,7 +269,8 @@ RayLight adapted_march(Atmosphere atmosphere, AirRay ray, ScatteringTowardsEye s
     float from = lit.begin + lit.width * float(cell - lit.first_cell);
     MarchState march;
     march.radiance = result.radiance;
-    march.column = from > along.x_begin ? columns_to_count(atmosphere, ray, line, along.count, from) : vec3(0.0, 0.0, 0.0);
+    march.column =
+        from > along.x_begin ? columns_to_count(atmosphere, ray, line, along.count, from) : vec3(0.0, 0.0, 0.0);
     march.column.z = ozone_begin;
     float passed = 0.0;  // nodes asked for by the cells before this one
     for (int n = 1; n <= lit_panels; n++) {
@@ -283,7 +291,8 @@ RayLight adapted_march(Atmosphere atmosphere, AirRay ray, ScatteringTowardsEye s
   }
   result.transmittance = vec3(1.0, 1.0, 1.0);
   if (with_transmittance) {
-    result.transmittance = exp(-extinction(atmosphere, columns_to_count(atmosphere, ray, line, along.count, along.x_end)));
+    result.transmittance =
+        exp(-extinction(atmosphere, columns_to_count(atmosphere, ray, line, along.count, along.x_end)));
   }
   return result;
 }

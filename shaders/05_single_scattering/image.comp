@@ -16,10 +16,11 @@ layout(push_constant) uniform Push {
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, camera.size))) return;
-  // A copy: loops then keep the numbers at hand instead of reading the uniform block at every sample.
+  // A copy, so that loops keep the numbers in registers instead of reading the uniform block at every sample.
   const Atmosphere air = atmosphere;
   const vec3 view = camera_direction(camera, pixel);
-  vec3 radiance = scattered_light(air, camera.altitude_km, view, camera.sun, steps.x, LIGHT_STEPS, RULE, false).radiance;
+  vec3 radiance =
+      scattered_light(air, camera.altitude_km, view, camera.sun, steps.x, LIGHT_STEPS, RULE, false).radiance;
   if (SUN_DISC) radiance += sun_disc_light(air, camera, pixel, view);
   imageStore(target, pixel, vec4(radiance, 1.0));
 }

@@ -1,8 +1,8 @@
 // Columns of air on straight paths: what sunlight crosses before it is scattered. Pure functions; km.
 //
-// A path is measured from its line's tangent point: s = r mu, altitude h(s) = h_p + s^2 / (b + sqrt(b^2 + s^2)).
-// Near that point the density is exp(-y^2) in units of sqrt(2 b H): its integral is an error function, and stays close to
-// one all the way out. Ozone's tent is integrated piece by piece.
+// A path is measured from its line's tangent point: s = r mu, altitude h(s) = h_p + s^2 / (b + sqrt(b^2 + s^2)). Near
+// that point the density falls as exp(-y^2), y = s / sqrt(2 b H): its integral is an error function, and farther out it
+// stays close to one. Ozone's tent is integrated piece by piece.
 #ifndef WELKIN_LIGHT_PATH_GLSL
 #define WELKIN_LIGHT_PATH_GLSL
 
@@ -50,17 +50,19 @@ float exponential_panels(Line line, float s_a, float s_b, float scale_height_km,
 }
 
 // [closed_form]
-// sqrt(pi) exp(y^2) erfc(y) for y >= 0, relative error below 5e-6: t times a polynomial in t = 1 / (1 + 0.55 y), fitted by
-// least squares at Chebyshev nodes. It tends to 1/y.
+// sqrt(pi) exp(y^2) erfc(y) for y >= 0, relative error below 5e-6: t times a polynomial in t = 1 / (1 + 0.55 y), fitted
+// by least squares at Chebyshev nodes. It tends to 1/y.
 float scaled_erfc(float y) {
   float t = 1.0 / (1.0 + 0.55 * y);
-  return t * (0.5500016937 + t * (0.5497359168 + t * (0.4732278677 + t * (0.2440005334 + t * (0.3169050620 + t * (-0.5373271221 + t * 0.1759175966))))));
+  return t * (0.5500016937 + t * (0.5497359168 + t * (0.4732278677 + t * (0.2440005334 +
+         t * (0.3169050620 + t * (-0.5373271221 + t * 0.1759175966))))));
 }
 
-// Integral of exp(-h/H) from the altitude h on the line outward, to infinity: no nodes at all. s is the distance from the
-// tangent point, so that y = s / sqrt(H (r + b)) keeps its digits close to it, where (h - h_p) / H has none left.
-//   With u = (h' - h_p) / H above the tangent point, ds = H G(u) u^(-1/2) du / sqrt(H), G(u) = (b + H u) / sqrt(2 b + H u),
-//   and G hardly changes over the one scale height that matters: G(u) = G(z) (1 + k (u - z)), z = (h - h_p) / H = y^2.
+// Integral of exp(-h/H) from the altitude h on the line outward to infinity, in closed form. s is the distance from the
+// tangent point: y = s / sqrt(H (r + b)) keeps its digits close to that point, where (h - h_p) / H has none left.
+//   With u = (h' - h_p) / H above the tangent point, ds = H G(u) u^(-1/2) du / sqrt(H),
+//   G(u) = (b + H u) / sqrt(2 b + H u), and G hardly changes over the one scale height that matters:
+//   G(u) = G(z) (1 + k (u - z)), z = (h - h_p) / H = y^2.
 //   C = exp(-h/H) sqrt(H / (r + b)) r [ I_0 + k I_1 ],    k = H / r - H / (2 (r + b)),
 //   I_0 = sqrt(pi) exp(z) erfc(y),   I_1 = y + (1/2 - z) I_0.            Error of the order (H/r)^2: 1e-5 on Earth.
 float column_outward(Line line, float altitude_km, float s_km, float scale_height_km) {
@@ -73,12 +75,14 @@ float column_outward(Line line, float altitude_km, float s_km, float scale_heigh
   return exp(-altitude_km / scale_height_km) * sqrt(scale_height_km / sum) * r * (i_0 + k * i_1);
 }
 
-// The same from a point at altitude h to the top, towards r_mu; folded at the tangent point if the path dips there.
+// The same from a point at altitude h to the top. Where r_mu, r times the zenith cosine, is below 0, the path goes down
+// to the tangent point first: twice the column from there, less the part behind the start.
 float exponential_column_to_top(Line line, float altitude_km, float r_mu, float top_km, float scale_height_km) {
   float column = column_outward(line, altitude_km, abs(r_mu), scale_height_km);
   if (r_mu < 0.0) column = 2.0 * column_outward(line, line.tangent_km, 0.0, scale_height_km) - column;
-  // What lies above the top is not air. It matters where the air is thick there.
-  if (top_km < 12.0 * scale_height_km) column -= column_outward(line, max(top_km, altitude_km), chord_to(line, top_km), scale_height_km);
+  // Takes away what lies above the top, where the column has air. Below 12 scale heights that is not negligible.
+  if (top_km < 12.0 * scale_height_km)
+    column -= column_outward(line, max(top_km, altitude_km), chord_to(line, top_km), scale_height_km);
   return max(column, 0.0);
 }
 // [/closed_form]
@@ -86,7 +90,9 @@ float exponential_column_to_top(Line line, float altitude_km, float r_mu, float 
 // Integral of the ozone tent over the line's points between two altitudes, both on one side of the tangent point. Below
 // and above the peak the tent is linear in altitude, altitude is nearly quadratic in s, and Simpson integrates cubics.
 float ozone_column_between(Atmosphere atmosphere, Line line, float low_km, float high_km) {
-  if (high_km <= atmosphere.ozone_peak_km - atmosphere.ozone_half_width_km || low_km >= atmosphere.ozone_peak_km + atmosphere.ozone_half_width_km) return 0.0;
+  if (high_km <= atmosphere.ozone_peak_km - atmosphere.ozone_half_width_km ||
+      low_km >= atmosphere.ozone_peak_km + atmosphere.ozone_half_width_km)
+    return 0.0;
   float h_0 = clamp(atmosphere.ozone_peak_km - atmosphere.ozone_half_width_km, low_km, high_km);
   float h_1 = clamp(atmosphere.ozone_peak_km, low_km, high_km);
   float h_2 = clamp(atmosphere.ozone_peak_km + atmosphere.ozone_half_width_km, low_km, high_km);
@@ -99,7 +105,8 @@ float ozone_column_between(Atmosphere atmosphere, Line line, float low_km, float
   float h_b = line.tangent_km + b * b / (line.b_km + sqrt(line.b_km * line.b_km + b * b) + 1.0e-20);
   float middle = ozone_density(atmosphere, h_1);
   return ((s_1 - s_0) * (ozone_density(atmosphere, h_0) + 4.0 * ozone_density(atmosphere, h_a) + middle) +
-          (s_2 - s_1) * (middle + 4.0 * ozone_density(atmosphere, h_b) + ozone_density(atmosphere, h_2))) * 0.16666666666666667;
+          (s_2 - s_1) * (middle + 4.0 * ozone_density(atmosphere, h_b) + ozone_density(atmosphere, h_2))) *
+         0.16666666666666667;
 }
 
 float ozone_column_from_tangent(Atmosphere atmosphere, Line line, float altitude_km) {
@@ -145,7 +152,8 @@ vec3 sun_columns(Atmosphere atmosphere, float altitude_km, float mu_sun) {
     r_mu = -chord_to(line, altitude_km);
   }
   vec3 column = vec3(0.0, 0.0, 0.0);
-  if (HAS_RAYLEIGH) column.x = exponential_column_to_top(line, altitude_km, r_mu, top_km, atmosphere.rayleigh_scale_height_km);
+  if (HAS_RAYLEIGH)
+    column.x = exponential_column_to_top(line, altitude_km, r_mu, top_km, atmosphere.rayleigh_scale_height_km);
   if (HAS_MIE) column.y = exponential_column_to_top(line, altitude_km, r_mu, top_km, atmosphere.mie_scale_height_km);
   if (HAS_OZONE) {
     column.z = ozone_column_between(atmosphere, line, altitude_km, max(top_km, altitude_km));
@@ -154,8 +162,8 @@ vec3 sun_columns(Atmosphere atmosphere, float altitude_km, float mu_sun) {
   return max(column, vec3(0.0, 0.0, 0.0));
 }
 
-// Optical depth of `column` and of the way from there, a lit point at altitude h, to the sun. A later chapter has a table of
-// the second part and puts its look-up here: vec3 SUN_OPTICAL_DEPTH(atmosphere, altitude_km, mu_sun).
+// Optical depth of `column` and of the way from there, a lit point at altitude h, to the sun. A later chapter looks the
+// second part up in a table: it defines SUN_OPTICAL_DEPTH(atmosphere, altitude_km, mu_sun), a vec3.
 vec3 optical_depth_and_to_sun(Atmosphere atmosphere, vec3 column, float altitude_km, float mu_sun) {
 #ifdef SUN_OPTICAL_DEPTH
   return extinction(atmosphere, column) + SUN_OPTICAL_DEPTH(atmosphere, altitude_km, mu_sun);

@@ -15,7 +15,7 @@ const int kRuleMidpoint = 1;       // in the middle
 const int kRuleHillaire = 2;       // at 0.3 of the segment (Hillaire 2020)
 const int kRuleNonuniform = 3;     // segments [(i/N)^2, ((i+1)/N)^2] L, sample in the middle
 const int kRuleGaussLegendre = 4;  // panels of four Gauss-Legendre nodes; a segment's length is its weight
-const int kRuleAdapted = 5;        // panels of four in a coordinate that counts scale heights, placed where the light is
+const int kRuleAdapted = 5;        // panels of four, where the light is, in a coordinate that counts scale heights
 // [/rules]
 
 struct RayLight {
@@ -56,7 +56,7 @@ Segment quadrature_segment(int rule, int i, int n) {
 // (1 - exp(-tau)) / tau, the mean transmittance of a homogeneous segment; a series where the quotient would cancel.
 float mean_transmittance(float tau) {
   float series = 1.0 - tau * (0.5 - tau * (0.16666666666666667 - tau * 0.041666666666666667));
-  return tau < 0.05 ? series : (1.0 - exp(-tau)) / max(tau, 0.05);  // both, then a choice: no branch
+  return tau < 0.05 ? series : (1.0 - exp(-tau)) / max(tau, 0.05);  // computes both: no branch
 }
 // [/mean_transmittance]
 
@@ -138,7 +138,7 @@ bool sun_above_horizon(float ground_radius_km, float altitude_km, float mu_sun) 
 // [/shadow]
 
 // [fixed_march]
-// Optical depth from a lit point at altitude h to the sun, by the same rule as the view's (or looked up: see light_path.glsl).
+// Optical depth from a lit point at altitude h to the sun, by the rule of the view (or looked up: see light_path.glsl).
 vec3 marched_optical_depth_to_sun(Atmosphere atmosphere, float altitude_km, float mu_sun, int light_steps, int rule) {
 #ifdef SUN_OPTICAL_DEPTH
   return SUN_OPTICAL_DEPTH(atmosphere, altitude_km, mu_sun);
@@ -155,10 +155,10 @@ vec3 marched_optical_depth_to_sun(Atmosphere atmosphere, float altitude_km, floa
 #endif
 }
 
-// The rules that sample the ray at places fixed beforehand, for the ray and for the path to the sun alike. Within a
-// segment source and extinction are constant: it gives S dt (1 - exp(-tau)) / tau.
-RayLight fixed_march(Atmosphere atmosphere, AirRay ray, ScatteringTowardsEye scattering, int view_steps, int light_steps,
-                     int rule) {
+// The march of the rules that fix their samples beforehand, on the ray and on the paths to the sun. Within a segment
+// source and extinction are taken as constant: it adds S dt (1 - exp(-tau)) / tau.
+RayLight fixed_march(Atmosphere atmosphere, AirRay ray, ScatteringTowardsEye scattering, int view_steps,
+                     int light_steps, int rule) {
   float radius_km = atmosphere.ground_radius_km;
   RayLight light;
   light.radiance = vec3(0.0, 0.0, 0.0);

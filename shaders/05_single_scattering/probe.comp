@@ -21,7 +21,8 @@ layout(push_constant) uniform Push {
 void main() {
   const uint i = gl_GlobalInvocationID.x;
   if (i >= uint(steps.y)) return;
-  const RayLight light = single_scattering(atmosphere, rays[i].view.w, rays[i].view.xyz, rays[i].sun.xyz, steps.x, LIGHT_STEPS, RULE);
+  const RayLight light = single_scattering(atmosphere, rays[i].view.w, rays[i].view.xyz, rays[i].sun.xyz, steps.x,
+                                           LIGHT_STEPS, RULE);
   results[2 * i] = vec4(light.radiance, 0.0);
   results[2 * i + 1] = vec4(light.transmittance, 0.0);
 }

@@ -6,23 +6,24 @@
 
 // [scale_count]
 // A coordinate x that counts scale heights along a line: nodes evenly spaced in x suit every factor of the integrand.
-//   q(h) counts scale heights above the line's lowest point, 1/H_high each km, more of them near the ground where H_low
-//   rules: dq/dh = 1/H_high + (1/H_low - 1/H_high) (4 H_low)^2 / (h + 4 H_low)^2;
+//   q(h) counts scale heights above the line's lowest point: 1/H_high per km, and more near the ground, where H_low
+//   matters: dq/dh = 1/H_high + (1/H_low - 1/H_high) (4 H_low)^2 / (h + 4 H_low)^2;
 //   x = +-sqrt(q (1 + q)): proportional to s at a tangent point (where h is quadratic in s), to q far from it.
-// A ray that crosses almost none (half a metre down to the ground) would drown in the rounding of q; for it x is simply
-// the distance t.
+// On a ray that crosses almost none (half a metre down to the ground) the rounding of q would be too coarse; there x is
+// simply the distance t.
 struct ScaleCount {
   bool straight;   // x is the distance from the ray's first point
   float floor_km;  // lowest altitude: the tangent point's, or the ground
   float depth_km;  // of the tangent point below the ground, or 0
-  float q_floor;   // q at floor_km; capped, for a tangent point that deep no longer bends anything
+  float q_floor;   // q at floor_km; capped: a tangent point deeper than that changes nothing
   float per_km;    // 1/H_high
   float gain;
   float reach_km;
 };
 
 ScaleCount scale_count(Atmosphere atmosphere, Line line) {
-  float scale_a = HAS_RAYLEIGH ? atmosphere.rayleigh_scale_height_km : (HAS_MIE ? atmosphere.mie_scale_height_km : 10.0);
+  float scale_a =
+      HAS_RAYLEIGH ? atmosphere.rayleigh_scale_height_km : (HAS_MIE ? atmosphere.mie_scale_height_km : 10.0);
   float scale_b = HAS_MIE ? atmosphere.mie_scale_height_km : scale_a;
   float high = max(scale_a, scale_b);
   float low = min(scale_a, scale_b);

@@ -2,8 +2,8 @@
 //
 //   L(mu_s) = E / (pi sin^2 a) * (alpha + 2)/2 * mu_s^alpha       mu_s = sqrt(1 - (sin angle / sin a)^2)
 // a is the disc's angular radius, mu_s the cosine at the sun's surface. The factor (alpha + 2)/2 makes the disc's mean
-// E / (pi sin^2 a), so that the disc as a whole sends exactly the irradiance E. Exponents alpha of a power law fitted to the
-// sun's limb at 680, 550, 440 nm: Hestroffer and Magnan 1998, Astron. Astrophys. 333, 338.
+// E / (pi sin^2 a), so that the disc as a whole sends exactly the irradiance E. Exponents alpha of a power law fitted
+// to the sun's limb at 680, 550, 440 nm: Hestroffer and Magnan 1998, Astron. Astrophys. 333, 338.
 #ifndef WELKIN_SUN_DISC_GLSL
 #define WELKIN_SUN_DISC_GLSL
 
@@ -20,7 +20,7 @@ vec3 sun_disc_radiance(vec3 irradiance, float angular_radius, float mu) {
 // [/limb]
 
 // [disc_light]
-// The disc's mean radiance over a pixel, through the air along each of its pieces and as far as it stands above the
+// The disc's mean radiance over a pixel: each piece through the air in its direction, and only what stands above the
 // horizon. view: camera_direction() of that pixel.
 vec3 sun_disc_light(Atmosphere atmosphere, CameraRays camera, ivec2 pixel, vec3 view) {
   vec3 light = vec3(0.0, 0.0, 0.0);
@@ -33,7 +33,8 @@ vec3 sun_disc_light(Atmosphere atmosphere, CameraRays camera, ivec2 pixel, vec3 
       SunNode node = sun_node(disc, row, horizon, j);
       vec3 radiance = sun_disc_radiance(atmosphere.solar_irradiance, atmosphere.sun_angular_radius, node.mu);
       AirRay ray = enter_air(atmosphere, camera.altitude_km, node.view, camera.sun);
-      if (ray.hits_air) radiance *= exp(optical_depth_and_to_sun(atmosphere, vec3(0.0, 0.0, 0.0), ray.altitude_km, ray.mu) * -1.0);
+      if (ray.hits_air)
+        radiance *= exp(optical_depth_and_to_sun(atmosphere, vec3(0.0, 0.0, 0.0), ray.altitude_km, ray.mu) * -1.0);
       light += radiance * node.share;
     }
   }

@@ -20,7 +20,7 @@ vec3 xyY_from_rgb(vec3 rgb) {
   return vec3(X / sum, Y / sum, Y);
 }
 
-// Y = 0 is black whatever x and y say; y = 0 is no colour a light can have, and black too.
+// Y = 0 is black whatever x and y are; y = 0 is no colour that light can have, and gives black too.
 vec3 rgb_from_xyY(vec3 xyY) {
   if (!(xyY.z > 0.0) || !(xyY.y > 0.0)) return vec3(0.0, 0.0, 0.0);
   float X = xyY.x * (xyY.z / xyY.y);
@@ -32,8 +32,9 @@ vec3 rgb_from_xyY(vec3 xyY) {
 // [/xyY]
 
 // [gamut]
-// Light of luminance Y <= 1 whose channels a screen can show: where one passes 1, the colour moves towards the grey of the
-// same luminance just as far as it must. White where Y = 1; cutting the channel instead would take light away.
+// Light of luminance Y <= 1 as channels that a screen can show: where one passes 1, the colour moves towards the grey
+// of the same luminance just as far as it must. Where Y = 1 it becomes white; cutting the channel instead would lose
+// light.
 vec3 fit_gamut(vec3 rgb, float Y) {
   float largest = max(rgb.x, max(rgb.y, rgb.z));
   float share = largest > 1.0 ? max(1.0 - Y, 0.0) / (largest - min(Y, 1.0)) : 1.0;

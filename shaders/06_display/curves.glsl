@@ -1,9 +1,9 @@
-// Tone curves: from exposed scene light x >= 0 (1 = what a screen would show as white if nothing were done) to the share
-// of a screen's white, 0..1, both linear. sRGB's own curve comes after. Pure functions, no units.
+// Tone curves: from exposed scene light x >= 0 (1 = what a screen would show as white if nothing were done) to the
+// share of a screen's white, 0..1, both linear. sRGB's own curve comes after. Pure functions, no units.
 //
-// Domain: every float. tone_input() turns what is not a positive number (negative, -0, NaN) into 0 and what is beyond the
-// largest half float, infinity included, into 65504: no curve can then overflow or divide infinity by infinity. Every
-// curve is monotonic, and every result lies in [0, 1].
+// Domain: every float. tone_input() turns what is not a positive number (negative, -0, NaN) into 0 and what is beyond
+// the largest half float, infinity included, into 65504: no curve can then overflow or divide infinity by infinity.
+// Every curve is monotonic, and every result lies in [0, 1].
 #ifndef WELKIN_CURVES_GLSL
 #define WELKIN_CURVES_GLSL
 
@@ -24,8 +24,8 @@ float reinhard(float x, float white) { return min(x * (1.0 + x / (white * white)
 // [/reinhard]
 
 // [aces]
-// Narkowicz 2016: a rational fit to the ACES reference rendering for a 100 nit screen, scaled so that 1 comes out at 0.8
-// (the unscaled reference is this curve at 0.6 x).
+// Narkowicz 2016: a rational fit to the ACES reference rendering for a 100 nit screen, scaled so that 1 comes out at
+// 0.8 (the unscaled reference is this curve at 0.6 x).
 float aces_narkowicz(float x) { return min(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 1.0); }
 
 // Hill's fit of the same reference for one channel. Its numerator is negative below x = 0.0032: black there.
@@ -34,7 +34,7 @@ float aces_hill_channel(float x) {
 }
 
 // The reference works in wider primaries, where bright saturated light mixes towards white: into them (with the
-// reference's desaturation folded in), through the curve, and back. The rows of both matrices sum to 1: grey stays grey.
+// reference's desaturation folded in), through the curve, and back. Rows of both matrices sum to 1: grey stays grey.
 vec3 aces_hill(vec3 c) {
   vec3 wide = vec3(0.59719 * c.x + 0.35458 * c.y + 0.04823 * c.z,
                    0.07600 * c.x + 0.90834 * c.y + 0.01566 * c.z,
@@ -58,18 +58,18 @@ float lottes(float x, float contrast, float shoulder, float peak, float mid_in, 
   float peak_ad = pow(peak, ad);
   float b = (peak_a * mid_out - mid_a) / ((peak_ad - mid_ad) * mid_out);
   float c = (peak_ad * mid_a - peak_a * mid_ad * mid_out) / ((peak_ad - mid_ad) * mid_out);
-  if (x <= 0.0) return 0.0;  // pow(0, y) is not every driver's strength
+  if (x <= 0.0) return 0.0;  // not every driver computes pow(0, y) right
   return min(pow(x, contrast) / (pow(x, ad) * b + c), 1.0);
 }
 // [/lottes]
 
 // [uchimura]
-// Uchimura 2017 ("GT"): a toe m (x/m)^c + b up to m, a straight line of slope a over the share l of the way from m to the
-// peak p, then a shoulder that approaches p. At m = 0 there is no toe, at l = 1 no shoulder; as printed the first is 0/0
-// and the second a division by p - s1 = 0.
+// Uchimura 2017 ("GT"): a toe m (x/m)^c + b up to m, a straight line of slope a over the share l of the way from m to
+// the peak p, then a shoulder that approaches p. At m = 0 there is no toe, at l = 1 no shoulder; as printed the first
+// is 0/0 and the second a division by p - s1 = 0.
 float uchimura(float x, float p, float a, float m, float l, float c, float b) {
-  float line_end = m + (p - m) * l / a;     // where the shoulder begins, in
-  float rest = (p - m) * (1.0 - l);         // p - s1: what the shoulder still has to climb
+  float line_end = m + (p - m) * l / a;     // x at which the shoulder begins
+  float rest = (p - m) * (1.0 - l);         // p - s1: the height of the shoulder
   float toe = m > 0.0 ? m * pow(min(x / m, 1.0), c) + b : b;
   float line = m + a * (x - m);
   float shoulder = rest > 1.0e-6 * p ? p - rest * exp(-a * max(x - line_end, 0.0) / rest) : p;
@@ -80,12 +80,12 @@ float uchimura(float x, float p, float a, float m, float l, float c, float b) {
 // [/uchimura]
 
 // [uncharted2]
-// Hable 2010, ((x (A x + C B) + D E) / (x (A x + B) + D F)) - E/F with A..F = 0.15, 0.50, 0.10, 0.20, 0.02, 0.30. Printed
-// so it subtracts two numbers near 1/15 where x is small; over one fraction E/F cancels by hand:
+// Hable 2010, ((x (A x + C B) + D E) / (x (A x + B) + D F)) - E/F with A..F = 0.15, 0.50, 0.10, 0.20, 0.02, 0.30.
+// Printed so it subtracts two numbers near 1/15 where x is small; over one fraction E/F cancels by hand:
 //   x (A (F - E) x + B (C F - E)) / (F (x (A x + B) + D F)).
 float hable(float x) { return x * (0.042 * x + 0.005) / (0.3 * (x * (0.15 * x + 0.50) + 0.06)); }
 
-// The same as printed: for the demonstration of what it loses.
+// The same as printed, to demonstrate what it loses.
 float hable_naive(float x) { return (x * (0.15 * x + 0.05) + 0.004) / (x * (0.15 * x + 0.50) + 0.06) - 0.02 / 0.30; }
 
 // With the published exposure bias of 2, scaled so that the white point 11.2 comes out as 1.
@@ -104,8 +104,8 @@ float published_curve(int curve, float x) {
   return min(x, 1.0);
 }
 
-// What light is multiplied by before a curve so that middle grey, 0.18, comes out as 0.18: the meter's promise then holds
-// with every curve, and a comparison shows their shapes and not that one is brighter.
+// The factor before a curve that makes middle grey, 0.18, come out as 0.18: then the meter's middle grey holds with
+// every curve, and a comparison shows the curves' shapes and not that one is brighter.
 float grey_gain(int curve) {
   if (curve == kCurveReinhard) return 1.19976387;
   if (curve == kCurveNarkowicz) return 0.72317081;
@@ -120,7 +120,8 @@ float tone_channel(int curve, float light) { return published_curve(curve, tone_
 
 // All three channels. Hill's curve mixes them; the others take each by itself.
 vec3 tone_rgb(int curve, vec3 light) {
-  if (curve != kCurveHill) return vec3(tone_channel(curve, light.x), tone_channel(curve, light.y), tone_channel(curve, light.z));
+  if (curve != kCurveHill)
+    return vec3(tone_channel(curve, light.x), tone_channel(curve, light.y), tone_channel(curve, light.z));
   float gain = grey_gain(curve);
   return aces_hill(vec3(tone_input(light.x * gain), tone_input(light.y * gain), tone_input(light.z * gain)));
 }

@@ -40,7 +40,7 @@ void show(float log2_exposure) {
   const vec3 light = imageLoad(picture, source).rgb;
   vec3 level;
   if (any(isnan(light)) || any(isinf(light))) {
-    level = vec3(255.0, 0.0, 255.0);  // seen, not hidden
+    level = vec3(255.0, 0.0, 255.0);  // magenta, so that it is seen
   } else if (separator) {
     level = vec3(0.0);
   } else {

@@ -8,15 +8,15 @@ layout(local_size_x = 64) in;
 layout(binding = 0, std430) readonly buffer Histogram { uvec4 bins[64]; } histogram;
 layout(binding = 1, std430) buffer State {
   float exposure;   // log2 of the factor
-  float target;     // where it is going
-  float mean_log2;  // of what was measured
-  uint measured;    // samples that had a logarithm
+  float target;     // log2 of the factor it moves towards
+  float mean_log2;  // mean log2 luminance of what was measured
+  uint measured;    // samples with a luminance above 0
 } state;
 layout(push_constant) uniform Push {
-  float low, high;           // shares of the measured samples, darkest first, that are left out below and counted up to
-  float to_bright, to_dark;  // shares of the way gone in this frame
+  float low, high;           // ranks between which samples count, as shares of all measured, darkest first
+  float to_bright, to_dark;  // shares of the way covered in this frame
   float adaptation;
-  float fallback;            // exposure of a picture without anything to measure, when there was none before
+  float fallback;            // exposure of a first picture that has nothing to measure
   int snap;                  // 1: no exposure before this one; go the whole way
 } push;
 

@@ -1,5 +1,5 @@
-// Counts the picture's log2 luminance into 256 bins. A workgroup counts a tile in shared memory first and adds what it
-// has to the picture's bins once: a thousandth of the traffic.
+// Counts the picture's log2 luminance into 256 bins. A workgroup counts its tile in shared memory and then adds each
+// bin to the picture's once, instead of once per sample.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -19,8 +19,8 @@ shared uint local_bins[kMeterBins];
 void main() {
   for (uint bin = gl_LocalInvocationIndex; bin < kMeterBins; bin += 64u) local_bins[bin] = 0u;
   barrier();
-  // 32 x 32 samples a workgroup, 16 an invocation. One beyond the edge is skipped, its invocation is not: everyone has
-  // to reach the barrier.
+  // 32 x 32 samples per workgroup, 16 per invocation. Samples beyond the edge are skipped, but no invocation returns:
+  // all have to reach the barrier.
   for (int i = 0; i < 16; ++i) {
     const ivec2 place = ivec2(gl_WorkGroupID.xy) * 32 + ivec2(i & 3, i >> 2) * 8 + ivec2(gl_LocalInvocationID.xy);
     if (place.x < push.samples.x && place.y < push.samples.y) {

@@ -1,7 +1,7 @@
 // The light meter: a histogram of log2 luminance, and the exposure it asks for.
 //
-// Bin 0 holds what has no logarithm: black, negative, NaN. Bins 1..255 divide 50 stops evenly, 0.196 stops each; what is
-// darker or brighter, infinity included, goes to the outermost. So every pixel is in exactly one bin.
+// Bin 0 holds what has no logarithm: black, negative, NaN. Bins 1..255 divide 50 stops evenly, 0.196 stops each; what
+// is darker or brighter, infinity included, goes to the outermost. So every pixel is in exactly one bin.
 #ifndef WELKIN_METER_GLSL
 #define WELKIN_METER_GLSL
 
@@ -10,12 +10,12 @@
 
 const uint kMeterBins = 256u;
 const float kMeterDarkest = -30.0;    // log2 of radiance per unit solar irradiance: a sky lit by stars alone
-const float kMeterBrightest = 20.0;   // beyond the sun's disc, 2^14, by room for brighter suns
+const float kMeterBrightest = 20.0;   // the sun's disc is 2^14; the rest is room for brighter suns
 const float kMeterStops = 50.0;       // brightest - darkest: log2(max) - log2(min)
 
 // [bin]
-// noise in [0, 1) decides between the two nearest bins, in proportion: the mean over a picture has no steps although the
-// bins do. With noise = 0.5 it is the bin the value lies in.
+// noise in [0, 1) chooses between the two nearest bins, the nearer one more often: the mean over a picture then changes
+// smoothly, although bins are steps. With noise = 0.5 it is the bin the value lies in.
 uint meter_bin(float luminance, float noise) {
   if (!(luminance > 0.0)) return 0u;
   float position = (log2(min(luminance, 1.0e38)) - kMeterDarkest) * (255.0 / kMeterStops);
@@ -36,8 +36,8 @@ float counted_share(float before, float here, float low, float high) {
 
 // [target]
 // log2 of the exposure factor for a mean of log2 luminance. adaptation = 1: the mean always comes out at middle grey.
-// Less: only the scene at the pivot does; what is brighter stays a little bright, what is darker a little dark, as for an
-// eye, by (1 - adaptation) of the distance from the pivot.
+// Below 1 only a scene at the pivot does: a brighter one comes out brighter and a darker one darker, by (1 -
+// adaptation) of its distance from the pivot, as for an eye.
 const float kMiddleGrey = -2.4739312;  // log2(0.18)
 const float kPivot = -13.0;            // mean log2 luminance of a sky in deep twilight
 

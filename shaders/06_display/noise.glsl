@@ -21,8 +21,8 @@ float pixel_noise(uint x, uint y, uint seed) {
 
 // [dither]
 // Triangular noise of mean 0 between -1 and 1, in steps of the screen. The difference of two neighbours' uniform noise
-// is triangular, and since each number is used twice with opposite signs, what is brighter here is darker beside: the
-// noise is fine-grained along a row, where the eye sees it least.
+// is triangular, and each number is used twice with opposite signs, so that a brighter pixel has a darker neighbour:
+// the noise is fine-grained along a row, where the eye sees it least.
 float dither_noise(uint x, uint y, uint seed) { return pixel_noise(x + 1u, y, seed) - pixel_noise(x, y, seed); }
 
 // Level 0..255 of an encoded value 0..1. The noise shrinks towards both ends, so black stays black and white white.

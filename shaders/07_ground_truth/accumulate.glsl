@@ -1,6 +1,6 @@
 // Sums of very many small numbers in float32. Pure functions.
 //
-// A float32 sum of 10^6 equal terms stops growing near 2^24 of them, and is wrong long before. Here each sum is two floats,
+// A float32 sum of equal terms stops growing near 2^24 of them, and is wrong long before. Here each sum is two floats,
 // the second holding what the first could not (two_sum of chapter 03): good to 48 bits, so 10^9 samples are safe.
 #ifndef WELKIN_ACCUMULATE_GLSL
 #define WELKIN_ACCUMULATE_GLSL
@@ -8,7 +8,8 @@
 #include "03_planet_and_rays/double_float.glsl"
 
 // [accumulate]
-// What a pixel keeps: sums over batches of their mean radiance, and of the square of its luminance, for the standard error.
+// What a pixel keeps: sums over batches of their mean radiance, and of the square of its luminance, for the standard
+// error.
 struct Accumulated {
   vec4 sum;  // xyz: radiance, w: luminance^2
   vec4 low;  // what rounding left of each

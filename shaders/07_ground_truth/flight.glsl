@@ -1,12 +1,13 @@
 // How far light gets before it meets something. Pure functions; lengths in km.
 //
-// Woodcock's trick (delta tracking): replace the density rho(t) along a ray by a larger one, the majorant, simple enough
-// to invert; draw collisions with that; keep one with probability rho / majorant, else fly on. Collisions kept are
-// distributed as exp(-tau) sigma_t exactly, whatever the majorant. What it costs is the number of collisions not kept.
+// Woodcock's trick (delta tracking): replace the density rho(t) along a ray by a larger one, the majorant, simple
+// enough to invert; draw collisions with that; keep one with probability rho / majorant, else fly on. Collisions kept
+// are distributed as exp(-tau) sigma_t exactly, whatever the majorant. What it costs is the number of collisions not
+// kept.
 //
-// Here a constituent's density exp(-h/H) gets a majorant of the same kind. Along a straight line the altitude is convex,
-// so a tangent to it lies below it:  h(t) >= h_m + mu_m (t - t_m), and exp(-(h_m + mu_m (t - t_m))/H) >= rho(t): an
-// exponential in t, whose integral and its inverse are closed forms. Straight up it touches the density all the way.
+// Here a constituent's density exp(-h/H) gets a majorant of the same kind. Along a straight line the altitude is
+// convex, so a tangent to it lies below it: h(t) >= h_m + mu_m (t - t_m), and exp(-(h_m + mu_m (t - t_m))/H) >= rho(t):
+// an exponential in t, whose integral and its inverse are closed forms. Straight up it touches the density all the way.
 #ifndef WELKIN_FLIGHT_GLSL
 #define WELKIN_FLIGHT_GLSL
 
@@ -49,7 +50,8 @@ struct Majorant {
 
 // [majorant]
 // The piece of majorant that begins at distance t. Pieces end one reach and three reaches on either side of the lowest
-// point, a reach being the distance over which the line's curvature is worth a scale height: sqrt(2 r H) / sine.
+// point, a reach being the distance over which altitude bends away from a tangent by one scale height: sqrt(2 r H) /
+// sine.
 Majorant majorant_from(PathSegment segment, float scale_height_km, float t_km) {
   float r = segment.radius_km + segment.altitude_km;
   float reach = sqrt(2.0 * r * scale_height_km) / max(segment.sine, 1.0e-3);
@@ -96,7 +98,8 @@ struct Flight {
 // [exponential_flight]
 // First collision with one constituent before `limit_km`. first_column: the majorant column to the first tentative
 // collision, in km, drawn by the caller; per_km: the coefficient at density 1, which scales those that follow.
-Flight exponential_flight(PathSegment segment, float scale_height_km, float per_km, float first_column, float limit_km, Random random) {
+Flight exponential_flight(PathSegment segment, float scale_height_km, float per_km, float first_column, float limit_km,
+                          Random random) {
   Flight flight;
   flight.collided = false;
   flight.finished = false;
@@ -153,7 +156,7 @@ vec3 densest(Atmosphere atmosphere, float low_km, float high_km) {
   return density;
 }
 
-// Where the segment leaves its shell, and where to: distance, and the next shell.
+// Where the segment leaves its shell: the distance, and the shell that it enters.
 struct ShellEnd {
   float t_km;
   int shell;
@@ -161,7 +164,8 @@ struct ShellEnd {
 ShellEnd shell_end(PathSegment segment, float top_km, float t_km, int shell, int shells) {
   ShellEnd end;
   if (t_km < segment.lowest_km && shell > 0) {
-    float t = distance_to_shell_from_outside(segment.radius_km, segment.altitude_km, segment.mu, segment.sine, shell_bottom(top_km, shell, shells));
+    float t = distance_to_shell_from_outside(segment.radius_km, segment.altitude_km, segment.mu, segment.sine,
+                                             shell_bottom(top_km, shell, shells));
     if (t >= t_km) {
       end.t_km = min(t, segment.length_km);
       end.shell = shell - 1;
@@ -172,7 +176,8 @@ ShellEnd shell_end(PathSegment segment, float top_km, float t_km, int shell, int
   end.shell = shell + 1;
   if (shell + 1 < shells && !(segment.lowest_km >= segment.length_km)) {
     float high = shell_bottom(top_km, shell + 1, shells);
-    end.t_km = clamp(distance_to_shell_from_inside(segment.radius_km, segment.altitude_km, segment.mu, high), t_km, segment.length_km);
+    end.t_km = clamp(distance_to_shell_from_inside(segment.radius_km, segment.altitude_km, segment.mu, high), t_km,
+                     segment.length_km);
   }
   return end;
 }
@@ -194,7 +199,8 @@ Flight shell_flight(Atmosphere atmosphere, PathSegment segment, vec3 channel, in
     if (flight.t_km >= segment.length_km) { flight.finished = true; break; }
     ShellEnd end = shell_end(segment, top_km, flight.t_km, shell, shells);
     float low = shell_bottom(top_km, shell, shells);
-    float majorant = dot(extinction(atmosphere, densest(atmosphere, low, shell_bottom(top_km, shell + 1, shells))), channel);
+    float majorant =
+        dot(extinction(atmosphere, densest(atmosphere, low, shell_bottom(top_km, shell + 1, shells))), channel);
     float available = majorant * (end.t_km - flight.t_km);
     if (available <= depth) {
       depth -= available;

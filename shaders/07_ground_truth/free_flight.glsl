@@ -1,4 +1,5 @@
-// The free flight of a path: from its last vertex to the next collision, to the ground or out of the air. Pure functions; km.
+// The free flight of a path: from its last vertex to the next collision, to the ground or out of the air. Pure
+// functions; km.
 //
 // The including file gives HAS_* and TRACKING.
 #ifndef WELKIN_FREE_FLIGHT_GLSL
@@ -12,9 +13,9 @@ struct FreeFlight {
   bool finished;        // false: the driver ended a loop
   float t_km;           // to the collision, or the segment's length
   float altitude_km;    // of the collision
-  vec3 meets;           // per channel: probability that the majorant is met at all, by nature
-  vec3 meets_forced;    // and as it was made
-  float spread;         // probability with which the collision was put anywhere on the segment instead
+  vec3 meets;           // per channel: the true probability that a flight meets the majorant at all
+  vec3 meets_forced;    // the probability it was given
+  float spread;         // probability that the collision was placed uniformly on the segment instead of flown to
   Random random;
 };
 
@@ -44,7 +45,7 @@ struct FirstColumns {
   float mie_km;
 };
 
-// Two independent races: the constituents' collisions do not know of each other, and the first of either counts.
+// The two constituents' collisions are independent of each other, and whichever comes first counts.
 FirstColumns first_columns(Collisions on, vec3 channel, bool force, FreeFlight flight, vec4 u) {
   float rayleigh = dot(on.rayleigh_per_km, channel);
   float mie = dot(on.mie_per_km, channel);
@@ -54,19 +55,21 @@ FirstColumns first_columns(Collisions on, vec3 channel, bool force, FreeFlight f
   first.mie_km = mie > 0.0 ? minus_log_one_minus(u.y) / mie : 3.0e38;
   if (!force) return first;
   first.met = u.z < dot(flight.meets_forced, channel);
-  // Either Rayleigh's majorant is met, and Mie's may be; or Mie's alone.
+  // One of the two is met: either Rayleigh's majorant, and then Mie's may be met too, or Mie's alone.
   float rayleigh_meets = rayleigh * on.rayleigh_majorant_km * mean_exponential(rayleigh * on.rayleigh_majorant_km);
   if (u.w * dot(flight.meets, channel) < rayleigh_meets) {
     first.rayleigh_km = minus_log_one_minus(u.x * rayleigh_meets) / max(rayleigh, 1.0e-30);
   } else {
     first.rayleigh_km = 3.0e38;
-    first.mie_km = minus_log_one_minus(u.y * mie * on.mie_majorant_km * mean_exponential(mie * on.mie_majorant_km)) / max(mie, 1.0e-30);
+    first.mie_km = minus_log_one_minus(u.y * mie * on.mie_majorant_km * mean_exponential(mie * on.mie_majorant_km)) /
+                   max(mie, 1.0e-30);
   }
   return first;
 }
 
 // The flight, cut short where one constituent collides earlier.
-FreeFlight cut_short(FreeFlight flight, PathSegment segment, float scale_height_km, float per_km, float first_column_km) {
+FreeFlight cut_short(FreeFlight flight, PathSegment segment, float scale_height_km, float per_km,
+                     float first_column_km) {
   Flight one = exponential_flight(segment, scale_height_km, per_km, first_column_km, flight.t_km, flight.random);
   flight.random = one.random;
   flight.finished = flight.finished && one.finished;
@@ -88,13 +91,13 @@ FreeFlight shell_free_flight(Atmosphere atmosphere, PathSegment segment, vec3 ch
   return flight;
 }
 
-// The hero's free flight. `force`: see to it that the majorant is met with probability `at_least`, where nature would have
-// it less often: most rays to the zenith of a clear sky would leave without meeting anything.
+// The hero's free flight. `force`: where the true probability of meeting the majorant is below `at_least`, it is raised
+// to that: most rays to the zenith of a clear sky would otherwise leave without a collision.
 //
-// spread: probability with which the hero does not fly at all but collides at a uniformly drawn place. Where the sunlight is
-// far away, behind air that no flight crosses, those paths find it; everywhere else the weights see to it that they agree.
-FreeFlight sample_free_flight(Atmosphere atmosphere, PathSegment segment, vec3 channel, bool force, float at_least, float spread,
-                              Random random) {
+// spread: probability of a collision at a uniformly drawn place instead of a flight. Such paths find sunlight that is
+// far away, behind air that no flight crosses. The paths' weights take both into account, so that the mean stays right.
+FreeFlight sample_free_flight(Atmosphere atmosphere, PathSegment segment, vec3 channel, bool force, float at_least,
+                              float spread, Random random) {
   FreeFlight flight;
   flight.collided = false;
   flight.finished = true;
@@ -104,7 +107,8 @@ FreeFlight sample_free_flight(Atmosphere atmosphere, PathSegment segment, vec3 c
   flight.meets_forced = flight.meets;
   flight.spread = spread;
   flight.random = random;
-  if (TRACKING == kTrackNaive || TRACKING == kTrackShells) return shell_free_flight(atmosphere, segment, channel, flight);
+  if (TRACKING == kTrackNaive || TRACKING == kTrackShells)
+    return shell_free_flight(atmosphere, segment, channel, flight);
   flight.random = draw(flight.random);
   vec4 u = flight.random.value;
   Collisions on = collisions_on(atmosphere, segment, force);
@@ -123,15 +127,17 @@ FreeFlight sample_free_flight(Atmosphere atmosphere, PathSegment segment, vec3 c
   u.x = (u.x - spread) / (1.0 - spread);
   FirstColumns first = first_columns(on, channel, force, flight, u);
   if (first.met && HAS_RAYLEIGH && first.rayleigh_km < 1.0e38)
-    flight = cut_short(flight, segment, atmosphere.rayleigh_scale_height_km, dot(on.rayleigh_per_km, channel), first.rayleigh_km);
+    flight = cut_short(flight, segment, atmosphere.rayleigh_scale_height_km, dot(on.rayleigh_per_km, channel),
+                       first.rayleigh_km);
   if (first.met && HAS_MIE && first.mie_km < 1.0e38)
     flight = cut_short(flight, segment, atmosphere.mie_scale_height_km, dot(on.mie_per_km, channel), first.mie_km);
   return flight;
 }
 // [/free_flight]
 
-// Probability of coming through to the end of a segment of which a share `passes` comes through by nature, where meeting the
-// majorant has probability `forced` instead of `meets`: those that met it and collided with nothing, and those that did not.
+// Probability that a flight reaches the segment's end: passes without forcing; where the probability of meeting the
+// majorant is `forced` instead of `meets`, the flights that met it and did not collide, plus those that did not meet
+// it.
 float end_pdf(float passes, float meets, float forced) {
   return forced > meets ? max(passes - (1.0 - meets), 0.0) * (forced / max(meets, 1.0e-30)) + (1.0 - forced) : passes;
 }

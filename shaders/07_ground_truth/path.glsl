@@ -1,13 +1,14 @@
 // One path of light, followed backward from the eye. Pure functions; km. Radiance in units of the sun's irradiance.
 //
 // The path carries, per channel, its throughput: what the medium did to the light along it (transmittance, scattering
-// coefficients, phase functions, albedo), and its pdf: the density with which that channel would have drawn this very path.
-// One channel, the hero, draws; all three are weighted by throughput / mean(pdf), which is unbiased for each (the balance
-// heuristic; Wilkie et al. 2014). With one channel a path, both are 0 for the others: the same lines compute both.
+// coefficients, phase functions, albedo), and its pdf: the density with which that channel would have drawn this very
+// path. One channel, the hero, draws; all three are weighted by throughput / mean(pdf), which is unbiased for each (the
+// balance heuristic; Wilkie et al. 2014). With one channel per path, both are 0 for the other channels: the same
+// lines serve both ways.
 //
-// The including file gives HAS_* and MIE_PHASE; TRACKING; HERO (const bool); ENVIRONMENT (const bool): light of radiance 1 from
-// outside in place of the sun; SPREAD (const bool): whether collisions are also put where no flight gets; SURFACES (const
-// bool): whether a path may meet a surface before the smooth planet's.
+// The including file gives HAS_* and MIE_PHASE; TRACKING; HERO (const bool); ENVIRONMENT (const bool): light of
+// radiance 1 from outside in place of the sun; SPREAD (const bool): whether collisions are also put where no flight
+// gets; SURFACES (const bool): whether a path may meet a surface before the smooth planet's.
 #ifndef WELKIN_PATH_GLSL
 #define WELKIN_PATH_GLSL
 
@@ -15,8 +16,9 @@
 #include "07_ground_truth/sampling.glsl"
 #include "07_ground_truth/sunlight.glsl"
 
-// How many collisions are put anywhere on their segment, from vertices that the sun reaches (first flight) and does not.
-// Found by measuring: without, the dusk's standard error is ten times as large; with more, a thick haze's.
+// Share of collisions placed uniformly on their segment: of the first flight where the sun reaches the eye, what is
+// added where it does not, and of later flights from where it does not. Measured: without them the standard error is
+// ten times as large at dusk; with more it grows in thick haze.
 const float kSpreadLit = 0.1;
 const float kSpreadDark = 0.4;
 const float kSpreadLater = 0.2;
@@ -49,8 +51,8 @@ struct Frame {
 };
 
 // [moved]
-// The frame at the end of a flight of t km: the vertical has turned by an angle of sine t sin(zenith)/r', which is the only
-// thing that happens. Nothing as large as a radius is subtracted.
+// The frame at the end of a flight of t km: only the vertical has turned, by an angle of sine t sin(zenith)/r'. No
+// numbers as large as a radius are subtracted.
 Frame moved(PathSegment segment, Frame at, float t_km, float altitude_km) {
   float r = segment.radius_km + segment.altitude_km;
   float r_to = segment.radius_km + altitude_km;
@@ -73,7 +75,7 @@ Frame moved(PathSegment segment, Frame at, float t_km, float altitude_km) {
 }
 // [/moved]
 
-// The path's first frame: where its ray is in the air, or enters it.
+// The path's first frame: at the eye, or where the ray enters the air.
 Frame first_frame(AirRay ray, float altitude_km, float top_km, vec3 view, vec3 sun) {
   float sine = sqrt(view.x * view.x + view.y * view.y);
   float x = sine > 0.0 ? view.x / sine : 1.0;
@@ -162,7 +164,7 @@ struct Path {
   Random random;
 };
 
-// Flights in closed form do not look at ozone: it is all throughput.
+// Flights under exponential majorants leave ozone out: all of it goes into the throughput.
 const bool CLOSED = TRACKING == kTrackExponential || TRACKING == kTrackClosedForm;
 
 // The eye, as the path's first vertex. A ray that misses the air ends here.
@@ -197,27 +199,29 @@ Path path_from_eye(Atmosphere atmosphere, float altitude_km, vec3 view, vec3 sun
     path.segment = shortened(path.segment, path.hit.distance_km);
     path.to_surface = true;
   }
-  // Where the eye stands in the dark, more collisions are put anywhere.
+  // The less sunlight reaches the eye, the more collisions are placed uniformly.
   path.to_sun = vec3(0.0, 0.0, 0.0);
   path.spread = 0.0;
   if (CLOSED && SPREAD && !ENVIRONMENT) {
-    if (sun_above_horizon(radius_km, ray.altitude_km, path.at.sun.z)) path.to_sun = exp(-extinction(atmosphere, sun_columns(atmosphere, ray.altitude_km, path.at.sun.z)));
+    if (sun_above_horizon(radius_km, ray.altitude_km, path.at.sun.z))
+      path.to_sun = exp(-extinction(atmosphere, sun_columns(atmosphere, ray.altitude_km, path.at.sun.z)));
     path.spread = kSpreadLit + kSpreadDark * (1.0 - min(min(path.to_sun.x, path.to_sun.y), path.to_sun.z));
   }
   return path;
 }
 
-// What the air lets through from the sun to the vertex; a random number with that mean where the way is tracked.
+// The transmittance from the sun to the vertex; where the way is tracked, a random number with that mean.
 Path with_sunlight(Atmosphere atmosphere, Path path, float altitude_km) {
-  Sunlight arriving = sunlight(atmosphere, altitude_km, path.at.sun.z, TRACKING, TRACKING == kTrackNaive ? 1 : 24, path.random);
+  Sunlight arriving =
+      sunlight(atmosphere, altitude_km, path.at.sun.z, TRACKING, TRACKING == kTrackNaive ? 1 : 24, path.random);
   path.random = arriving.random;
   path.ended = !arriving.finished;
   if (arriving.finished) path.to_sun = arriving.transmittance;
   return path;
 }
 
-// The flight to a collision or to the segment's end: its transmittance, and how likely it was. The pdf of a collision waits
-// for the extinction there.
+// Weighs the flight to a collision or to the segment's end by its transmittance and its pdf. The pdf of a collision
+// also needs the extinction there, which at_collision() multiplies in.
 Path flown(Atmosphere atmosphere, Path path, FreeFlight flight, float altitude_km) {
   path.flight_pdf = vec3(1.0, 1.0, 1.0);
   if (!HERO && !CLOSED) return path;
@@ -227,7 +231,8 @@ Path flown(Atmosphere atmosphere, Path path, FreeFlight flight, float altitude_k
   vec3 passes = exp(-extinction(atmosphere, column));
   vec3 gain = flight.meets_forced / max(flight.meets, vec3(1.0e-30, 1.0e-30, 1.0e-30));
   if (flight.collided) path.flight_pdf = passes * gain;
-  else path.pdf *= vec3(end_pdf(passes.x, flight.meets.x, flight.meets_forced.x), end_pdf(passes.y, flight.meets.y, flight.meets_forced.y),
+  else path.pdf *= vec3(end_pdf(passes.x, flight.meets.x, flight.meets_forced.x),
+                        end_pdf(passes.y, flight.meets.y, flight.meets_forced.y),
                         end_pdf(passes.z, flight.meets.z, flight.meets_forced.z)) * (1.0 - flight.spread);
   return path;
 }
@@ -251,7 +256,7 @@ Extinctions extinctions_at(Atmosphere atmosphere, vec3 density) {
   return by;
 }
 
-// The next direction, drawn from the phase function of what was hit: molecules where which < rayleigh.
+// The next direction, drawn from the phase function of what was hit: molecules or aerosol.
 Path scattered(Atmosphere atmosphere, Path path, vec3 density, Extinctions by, bool by_molecules, vec4 u) {
   Turn turn = rayleigh_turn(u.y, u.z);
   if (!by_molecules) {
@@ -262,7 +267,7 @@ Path scattered(Atmosphere atmosphere, Path path, vec3 density, Extinctions by, b
   path.at.direction = turned(path.at.direction, turn, u.w);
   ScatteringTowardsEye ahead = scattering_towards_eye(atmosphere, turn.one_minus_nu, turn.one_plus_nu);
   path.throughput *= ahead.rayleigh * density.x + ahead.mie * density.y;
-  // pdf: which of them was hit, and that it turned so.
+  // pdf: the probability of what was hit times that of the turn.
   path.pdf /= by.all;
   path.pdf *= (HAS_RAYLEIGH ? by.rayleigh * rayleigh_phase(turn.one_minus_nu) : vec3(0.0, 0.0, 0.0)) +
               (HAS_MIE ? by.mie * mie_phase(atmosphere, turn.one_minus_nu, turn.one_plus_nu) : vec3(0.0, 0.0, 0.0));
@@ -287,7 +292,7 @@ Path at_collision(Atmosphere atmosphere, Path path, FreeFlight flight, bool last
   float mie = dot(by.mie, path.channel);
   float absorbs = dot(by.ozone, path.channel);
   float which = u.x * (rayleigh + mie + absorbs);
-  // Without an absorber nothing ends here, not even a number that rounding took to the end of its range.
+  // Without an absorber no path ends here, even where rounding puts `which` at the end of its range.
   path.light.finished = last || (absorbs > 0.0 && which >= rayleigh + mie);
   path.ended = path.light.finished;
   if (path.ended) return path;
@@ -300,12 +305,13 @@ Path at_collision(Atmosphere atmosphere, Path path, FreeFlight flight, bool last
 Path at_surface(Atmosphere atmosphere, Path path, float altitude_km, bool last, vec4 u) {
   path.throughput *= path.hit.albedo;
   float facing = SURFACES ? dot(path.at.sun, path.hit.normal) : path.at.sun.z;
-  if (!ENVIRONMENT && facing > 0.0 && (!SURFACES || sun_above_horizon(atmosphere.ground_radius_km, altitude_km, path.at.sun.z))) {
+  if (!ENVIRONMENT && facing > 0.0 &&
+      (!SURFACES || sun_above_horizon(atmosphere.ground_radius_km, altitude_km, path.at.sun.z))) {
     path = with_sunlight(atmosphere, path, altitude_km);
     if (path.ended) return path;
     path.light.radiance += path.throughput * path.to_sun * (facing * 0.31830988618379067 / mean_of(path.pdf));
   }
-  // The cosine that the surface reflects by is the direction's pdf: neither changes.
+  // Cosine / pi is both what the surface reflects and the direction's pdf: throughput and pdf stay.
   path.at.direction = cosine_hemisphere(u.y, u.z);
   if (SURFACES) path.at.direction = about(path.hit.normal, path.at.direction);
   path.light.finished = last;
@@ -315,10 +321,10 @@ Path at_surface(Atmosphere atmosphere, Path path, float altitude_km, bool last, 
 // [/reflection]
 
 // [trace_path]
-// Russian roulette ends paths that carry little. What a path carries is judged by what it carried after its first vertex: all
-// of a thin ray's paths are thin.
+// Russian roulette ends paths that carry little, compared with what they carried after their first vertex: in thin air
+// all paths carry little.
 Path after_roulette(Path path, int order) {
-  // Only the ratio of throughput and pdf matters: kept near one.
+  // Only the ratio of throughput and pdf matters: both are kept near one.
   float scale = 1.0 / mean_of(path.pdf);
   path.throughput *= scale;
   path.pdf *= scale;
@@ -336,18 +342,22 @@ Path after_roulette(Path path, int order) {
 Path with_next_segment(Atmosphere atmosphere, Path path, float altitude_km) {
   vec3 direction = path.at.direction;
   float sine = min(sqrt(direction.x * direction.x + direction.y * direction.y), 1.0);
-  path.to_surface = direction.z < 0.0 && tangent_altitude(atmosphere.ground_radius_km, altitude_km, direction.z, sine) < 0.0;
+  path.to_surface =
+      direction.z < 0.0 && tangent_altitude(atmosphere.ground_radius_km, altitude_km, direction.z, sine) < 0.0;
   if (SURFACES) path.hit = level_ground(atmosphere);  // a surface of another slope was the first flight's only
-  path.spread = CLOSED && SPREAD && !ENVIRONMENT ? kSpreadLater * (1.0 - min(min(path.to_sun.x, path.to_sun.y), path.to_sun.z)) : 0.0;
-  path.segment = segment_from(atmosphere.ground_radius_km, atmosphere.top_km, altitude_km, direction.z, sine, path.to_surface);
+  path.spread = CLOSED && SPREAD && !ENVIRONMENT
+                    ? kSpreadLater * (1.0 - min(min(path.to_sun.x, path.to_sun.y), path.to_sun.z)) : 0.0;
+  path.segment = segment_from(atmosphere.ground_radius_km, atmosphere.top_km, altitude_km, direction.z, sine,
+                              path.to_surface);
   return path;
 }
 
-// Radiance along one random path, for an eye at altitude_km that looks along `view`; both directions are unit vectors in
-// the eye's local frame, z up. orders: scatterings and ground reflections at most; 0: all. Its mean over random paths is
-// the radiance of the sky and the ground, without the sun's disc.
-// `surface`, where there is one, ends the first flight; to all later ones it is not there: they meet the smooth planet.
-PathLight trace_path(Atmosphere atmosphere, float altitude_km, vec3 view, vec3 sun, FirstSurface surface, int orders, Random random) {
+// Radiance along one random path, for an eye at altitude_km that looks along `view`; both directions are unit vectors
+// in the eye's local frame, z up. orders: scatterings and ground reflections at most; 0: all. Its mean over random
+// paths is the radiance of the sky and the ground, without the sun's disc. `surface`, where there is one, ends the
+// first flight; later flights ignore it and meet the smooth planet.
+PathLight trace_path(Atmosphere atmosphere, float altitude_km, vec3 view, vec3 sun, FirstSurface surface, int orders,
+                     Random random) {
   Path path = path_from_eye(atmosphere, altitude_km, view, sun, surface, random);
   if (path.ended) return path.light;
   for (int order = 1; order < 65000; order++) {
@@ -356,17 +366,19 @@ PathLight trace_path(Atmosphere atmosphere, float altitude_km, vec3 view, vec3 s
                                            path.to_surface || ENVIRONMENT ? 0.5 : 1.0, path.spread, path.random);
     path.random = flight.random;
     if (!flight.finished) break;
-    float altitude = flight.collided ? flight.altitude_km : (path.to_surface ? path.hit.altitude_km : atmosphere.top_km);
+    float altitude =
+        flight.collided ? flight.altitude_km : (path.to_surface ? path.hit.altitude_km : atmosphere.top_km);
     path = flown(atmosphere, path, flight, altitude);
-    // Out of the air the sun's disc is not looked at: what is there else is the test's uniform light.
+    // Out of the air. The sun's disc is not counted; the only other light out there is a test's uniform one.
     if (!flight.collided && !path.to_surface) {
       if (ENVIRONMENT) path.light.radiance += path.throughput / mean_of(path.pdf);
       path.light.finished = true;
       break;
     }
-    // At the vertex the vertical is another one.
+    // From here on directions are in the frame of the vertex.
     path.light.vertices = order;
-    if (SURFACES && path.hit.distance_km > 0.0) path.hit.normal = moved_along(path.segment, path.at, path.hit.normal, flight.t_km, altitude);
+    if (SURFACES && path.hit.distance_km > 0.0)
+      path.hit.normal = moved_along(path.segment, path.at, path.hit.normal, flight.t_km, altitude);
     path.at = moved(path.segment, path.at, flight.t_km, altitude);
     // Light that is scattered or reflected there into the path, and the path's next direction.
     path.random = draw(path.random);

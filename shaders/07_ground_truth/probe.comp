@@ -30,7 +30,8 @@ void main() {
   float cut = 0.0;
   for (int k = 0; k < work.z; ++k) {
     const Random random = random_stream(ray, block * uint(work.z) + uint(k), uint(extra.y));
-    const PathLight light = trace_path(air, probed.view.w, probed.view.xyz, probed.sun.xyz, no_surface(), extra.x, random);
+    const PathLight light =
+        trace_path(air, probed.view.w, probed.view.xyz, probed.sun.xyz, no_surface(), extra.x, random);
     sum += light.radiance;
     squares += light.radiance * light.radiance;
     if (!light.finished) cut += 1.0;

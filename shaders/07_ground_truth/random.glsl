@@ -1,8 +1,8 @@
 // Random numbers that are a pure function of what they are for: (path, sample, seed, how many were drawn before).
 //
-// A counter is hashed by pcg4d (Jarzynski and Olano 2020), a permutation of 128 bits: the same on every device, no state
-// kept between frames, and no two paths share a stretch of one sequence, as they would with a seeded generator of 2^32
-// states. fract(sin()) is none of these. Pure functions, also valid C++.
+// A counter is hashed by pcg4d (Jarzynski and Olano 2020), a permutation of 128 bits: the same on every device, no
+// state kept between frames, and no two paths share a stretch of one sequence, as they would with a seeded generator of
+// 2^32 states. fract(sin()) has none of these properties. Pure functions, also valid C++.
 #ifndef WELKIN_RANDOM_GLSL
 #define WELKIN_RANDOM_GLSL
 
@@ -33,10 +33,12 @@ Random random_stream(uint path, uint number, uint seed) {
   return random;
 }
 
-// The next four. 24 bits each, in the middle of their steps: never 0; the last middle rounds to 1 and is kept below.
+// The next four, of 24 bits each, in the middle of their steps: never 0. The last middle would round to 1; min() keeps
+// it below.
 Random draw(Random random) {
   uvec4 bits = pcg4d(random.key) >> 8u;
-  random.value = min((vec4(bits) + 0.5) * 5.9604644775390625e-8, vec4(0.99999994, 0.99999994, 0.99999994, 0.99999994));
+  random.value =
+      min((vec4(bits) + 0.5) * 5.9604644775390625e-8, vec4(0.99999994, 0.99999994, 0.99999994, 0.99999994));
   random.key.w += 1u;
   return random;
 }

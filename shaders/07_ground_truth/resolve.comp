@@ -1,4 +1,4 @@
-// Sums to a picture, over the smooth planet.
+// Turns sums into a picture, over the smooth planet.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define FIRST_SURFACES 0

@@ -1,5 +1,5 @@
-// From sums to a picture: the mean, the sun's disc behind the air, and per workgroup what the standard error is.
-// Included by resolve.comp (FIRST_SURFACES 0) and resolve_surfaces.comp (1: the disc sets behind them).
+// From sums to a picture: the mean, the sun's disc behind the air, and the standard error per workgroup.
+// Included by resolve.comp (FIRST_SURFACES 0) and resolve_surfaces.comp (1: surfaces hide the disc).
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "interop/camera.h"
 #include "03_planet_and_rays/camera.glsl"
@@ -45,9 +45,11 @@ void main() {
   group[gl_LocalInvocationIndex] = mine;
   for (uint half_size = 32u; half_size > 0u; half_size /= 2u) {
     barrier();
-    if (gl_LocalInvocationIndex < half_size) group[gl_LocalInvocationIndex] += group[gl_LocalInvocationIndex + half_size];
+    if (gl_LocalInvocationIndex < half_size)
+      group[gl_LocalInvocationIndex] += group[gl_LocalInvocationIndex + half_size];
   }
   if (gl_LocalInvocationIndex == 0u)
-    groups[gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x] = vec4(group[0], float(batches.x), float(batches.y));
+    groups[gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x] =
+        vec4(group[0], float(batches.x), float(batches.y));
 }
 // [/resolve]

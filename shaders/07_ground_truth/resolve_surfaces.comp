@@ -1,4 +1,4 @@
-// Sums to a picture, behind images of first surfaces.
+// Turns sums into a picture, behind images of first surfaces.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define FIRST_SURFACES 1

@@ -13,7 +13,8 @@ struct Turn {
 };
 
 // [rayleigh_turn]
-// 3/8 (1 + nu^2) dnu is three quarters of a uniform nu and one quarter of 3/2 nu^2, whose distribution is a cube.
+// 3/8 (1 + nu^2) dnu is three quarters of a uniform nu and one quarter of 3/2 nu^2, whose distribution is inverted by a
+// cube root.
 Turn rayleigh_turn(float which, float u) {
   Turn turn;
   if (which < 0.75) {
@@ -31,8 +32,9 @@ Turn rayleigh_turn(float which, float u) {
 // [/rayleigh_turn]
 
 // [henyey_greenstein_turn]
-// Inverse of the distribution. With a = 1 - g, w = 1 - g + 2 g u (g >= 0) it is 1 - nu = a (1-u) (a (1+g)/w + a) / w: no
-// difference of nearly equal numbers for any g, 0 and almost 1 included. A backward lobe is a forward one seen from behind.
+// Inverse of the distribution. With a = 1 - g, w = 1 - g + 2 g u (g >= 0) it is 1 - nu = a (1-u) (a (1+g)/w + a) / w:
+// no difference of nearly equal numbers for any g, 0 and almost 1 included. A backward lobe is a forward one seen from
+// behind.
 Turn henyey_greenstein_turn(float g, float u) {
   float size = abs(g);
   float a = 1.0 - size;
@@ -46,10 +48,10 @@ Turn henyey_greenstein_turn(float g, float u) {
 // [/henyey_greenstein_turn]
 
 // [mie_turn]
-// Directions are drawn from Henyey-Greenstein's lobe, or from the two lobes where there are two. Cornette-Shanks and Draine
-// are that lobe times 1 + alpha nu^2: of the turns drawn for them a share (1 + alpha nu^2) / (1 + alpha) is kept, a third at
-// least. The weight could take the factor instead, and its mean would stay right, but a product of a thousand such factors is
-// 0 on nearly every path and enormous on one that nobody sees.
+// Directions are drawn from Henyey-Greenstein's lobe, or from the two lobes where there are two. Cornette-Shanks and
+// Draine are that lobe times 1 + alpha nu^2: of the turns drawn for them a share (1 + alpha nu^2) / (1 + alpha) is
+// kept, a third at least. The weight could take the factor instead, and its mean would stay right, but a product of a
+// thousand such factors is 0 on nearly every path and enormous on the rare others.
 Turn mie_turn(Atmosphere atmosphere, float which, float u) {
   float g = atmosphere.mie_g;
   if (MIE_PHASE == 3 && which < atmosphere.mie_alpha) g = atmosphere.second_g;
@@ -63,7 +65,7 @@ bool mie_turn_kept(Atmosphere atmosphere, Turn turn, float u) {
   return u * (1.0 + alpha) <= 1.0 + alpha * nu * nu;
 }
 
-// One that is kept, with a density that is the phase function. After 64 tries the last is taken: 5e-12 of them.
+// Draws turns until one is kept: their density is the phase function. After 64 tries the last is taken: 5e-12 of all.
 struct MieTurn {
   Turn turn;
   Random random;
@@ -83,8 +85,8 @@ MieTurn kept_mie_turn(Atmosphere atmosphere, float which, float u, Random random
 // [/mie_turn]
 
 // [turned]
-// The direction that makes this turn with `axis`, at an angle around it. 1 - nu enters as it is: a turn of 1e-4 keeps its
-// digits. Frame without square roots or poles: Duff et al. 2017.
+// The direction that makes this turn with `axis`, at an angle around it. 1 - nu enters as it is: a turn of 1e-4 keeps
+// its digits. Frame without square roots or poles: Duff et al. 2017.
 vec3 turned(vec3 axis, Turn turn, float around) {
   float side = axis.z >= 0.0 ? 1.0 : -1.0;
   float a = -1.0 / (side + axis.z);
@@ -97,7 +99,7 @@ vec3 turned(vec3 axis, Turn turn, float around) {
   return to / length(to);
 }
 
-// A vector given by its components around the vertical, taken around `axis` instead. The same frame.
+// The vector whose components in a frame around `axis`, the same as turned()'s, are those of v.
 vec3 about(vec3 axis, vec3 v) {
   float side = axis.z >= 0.0 ? 1.0 : -1.0;
   float a = -1.0 / (side + axis.z);

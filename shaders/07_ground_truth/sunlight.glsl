@@ -1,4 +1,4 @@
-// What of the sun's light arrives at a point: three ways to the same expectation. Pure functions; km.
+// The share of the sun's light that arrives at a point, in three ways of the same mean. Pure functions; km.
 #ifndef WELKIN_SUNLIGHT_GLSL
 #define WELKIN_SUNLIGHT_GLSL
 
@@ -24,8 +24,9 @@ PathSegment segment_from(float radius_km, float top_km, float altitude_km, float
 }
 
 // [ratio_tracking]
-// Ratio tracking (Novak, Selle, Jarosz 2014): fly through the majorant's collisions and multiply by the share of each that
-// is not real. Its mean is the transmittance, exactly; no integral is evaluated. The majorant covers all three channels.
+// Ratio tracking (Novak, Selle, Jarosz 2014): fly through the majorant's collisions and multiply by the share of each
+// that is not real. Its mean is the transmittance, exactly; no integral is evaluated. The majorant covers all three
+// channels.
 Sunlight ratio_tracked(Atmosphere atmosphere, PathSegment segment, int shells, Random random) {
   float top_km = atmosphere.top_km;
   Sunlight light;
@@ -95,8 +96,8 @@ Sunlight exponential_ratio_tracked(PathSegment segment, float scale_height_km, v
 // [/ratio_tracking]
 
 // [columns]
-// Columns (rayleigh, mie, ozone) in km over the first t_km of a segment, as differences of chapter 05's closed form. Their
-// error is an absolute one, 1e-5 of a scale height's column: right for an exponent, wrong for a quotient.
+// Columns (rayleigh, mie, ozone) in km over the first t_km of a segment, as differences of chapter 05's closed form.
+// Their error is absolute, 1e-5 of a scale height's column: small enough for an exponent, too large for a quotient.
 vec3 columns_along(Atmosphere atmosphere, PathSegment segment, float t_km, float altitude_km) {
   Line line = line_through(segment.radius_km, segment.altitude_km, segment.mu, segment.sine);
   float s_0 = (segment.radius_km + segment.altitude_km) * segment.mu;
@@ -106,12 +107,14 @@ vec3 columns_along(Atmosphere atmosphere, PathSegment segment, float t_km, float
   if (HAS_RAYLEIGH) {
     float a = column_outward(line, segment.altitude_km, abs(s_0), atmosphere.rayleigh_scale_height_km);
     float b = column_outward(line, altitude_km, abs(s_1), atmosphere.rayleigh_scale_height_km);
-    column.x = dips ? 2.0 * column_outward(line, line.tangent_km, 0.0, atmosphere.rayleigh_scale_height_km) - a - b : abs(a - b);
+    column.x = dips ? 2.0 * column_outward(line, line.tangent_km, 0.0, atmosphere.rayleigh_scale_height_km) - a - b
+                    : abs(a - b);
   }
   if (HAS_MIE) {
     float a = column_outward(line, segment.altitude_km, abs(s_0), atmosphere.mie_scale_height_km);
     float b = column_outward(line, altitude_km, abs(s_1), atmosphere.mie_scale_height_km);
-    column.y = dips ? 2.0 * column_outward(line, line.tangent_km, 0.0, atmosphere.mie_scale_height_km) - a - b : abs(a - b);
+    column.y = dips ? 2.0 * column_outward(line, line.tangent_km, 0.0, atmosphere.mie_scale_height_km) - a - b
+                    : abs(a - b);
   }
   if (HAS_OZONE) {
     float a = ozone_column_from_tangent(atmosphere, line, segment.altitude_km);
@@ -123,13 +126,14 @@ vec3 columns_along(Atmosphere atmosphere, PathSegment segment, float t_km, float
 
 // Columns of a whole ray.
 vec3 ray_columns(Atmosphere atmosphere, AirRay ray) {
-  PathSegment segment = segment_from(atmosphere.ground_radius_km, atmosphere.top_km, ray.altitude_km, ray.mu, ray.sine, ray.hits_ground);
+  PathSegment segment = segment_from(atmosphere.ground_radius_km, atmosphere.top_km, ray.altitude_km, ray.mu, ray.sine,
+                                     ray.hits_ground);
   return columns_along(atmosphere, segment, segment.length_km, ray.hits_ground ? 0.0 : atmosphere.top_km);
 }
 // [/columns]
 
 // [sunlight]
-// Share of the sun's light that arrives at a point from which it is seen, or a random number whose mean that is.
+// Share of the sun's light that arrives at a point that sees the sun, or a random number with that mean.
 Sunlight sunlight(Atmosphere atmosphere, float altitude_km, float mu_sun, int tracking, int shells, Random random) {
   Sunlight light;
   light.finished = true;
@@ -142,9 +146,12 @@ Sunlight sunlight(Atmosphere atmosphere, float altitude_km, float mu_sun, int tr
   PathSegment segment = segment_from(atmosphere.ground_radius_km, atmosphere.top_km, altitude_km, mu_sun, sine, false);
   if (tracking != kTrackExponential) return ratio_tracked(atmosphere, segment, shells, random);
   light.transmittance = vec3(1.0, 1.0, 1.0);
-  if (HAS_RAYLEIGH) light = exponential_ratio_tracked(segment, atmosphere.rayleigh_scale_height_km, atmosphere.rayleigh_scattering, light.random);
+  if (HAS_RAYLEIGH)
+    light = exponential_ratio_tracked(segment, atmosphere.rayleigh_scale_height_km, atmosphere.rayleigh_scattering,
+                                      light.random);
   if (HAS_MIE) {
-    Sunlight mie = exponential_ratio_tracked(segment, atmosphere.mie_scale_height_km, atmosphere.mie_extinction, light.random);
+    Sunlight mie =
+        exponential_ratio_tracked(segment, atmosphere.mie_scale_height_km, atmosphere.mie_extinction, light.random);
     light.transmittance *= mie.transmittance;
     light.finished = light.finished && mie.finished;
     light.random = mie.random;

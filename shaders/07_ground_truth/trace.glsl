@@ -1,6 +1,6 @@
-// One batch of random paths for every pixel, added to what the batches before left. Rays go through the pixels' centres, as
-// in every other chapter: this is the truth of a ray, not of a pixel's area.
-// Included by trace.comp (FIRST_SURFACES 0: nothing of them is compiled or bound) and trace_surfaces.comp (1).
+// One batch of random paths for every pixel, added to what the batches before left. Rays go through the pixels'
+// centres, as in every other chapter: this is the truth of a ray, not of a pixel's area. Included by trace.comp
+// (FIRST_SURFACES 0: nothing of them is compiled or bound) and trace_surfaces.comp (1).
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "interop/camera.h"
 #include "03_planet_and_rays/camera.glsl"
@@ -17,7 +17,7 @@ layout(binding = 3, std430) buffer Cut {
   uint unfinished;  // paths the driver ended before they were done
 };
 #if FIRST_SURFACES
-layout(binding = 4, rgba32f) uniform readonly image2D normals;  // in the eye's local frame; w: distance, km, 0: no surface
+layout(binding = 4, rgba32f) uniform readonly image2D normals;  // in the eye's local frame; w: distance, km, 0: none
 layout(binding = 5, rgba32f) uniform readonly image2D albedos;
 #endif
 layout(push_constant) uniform Push {

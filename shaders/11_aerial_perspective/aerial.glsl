@@ -1,17 +1,17 @@
-// The air between the eye and what it sees: radiance it adds, and the part of the light behind it lets through. Pure
-// functions; km. Besides what chapter 09's functions ask for, the including file gives
+// The air between the eye and what it sees: the radiance it adds, and the share of the light behind it that it lets
+// through. Pure functions; km. Besides what chapter 09's functions ask for, the including file gives
 //   const bool HIGHER_ORDERS                                      chapter 09's table is there
 //   float sun_behind_terrain(float t_km, float altitude_km)       share of the sun's disc seen from there, 0 ... 1
 //
 //   L(d) = E_sun * integral from 0 to d of T(0, t) [ (beta_R rho_R P_R + beta_M rho_M P_M) T(t, sun) V(t) + S(t) ] dt
-// S: chapter 09's source, light scattered before, that is scattered towards the eye. V: the terrain's shadow on sunlight;
-// light of higher orders comes from all around and is not shadowed.
+// S: chapter 09's source: light that was scattered before and is scattered again, towards the eye. V: the share of the
+// sun that the terrain leaves visible; light of higher orders comes from all around and is not shadowed.
 #ifndef WELKIN_AERIAL_GLSL
 #define WELKIN_AERIAL_GLSL
 
 #include "09_multiple_scattering_lut/multiple_scattering.glsl"
 
-// Transmittance of (method's) air from a point to the top; 0 where the planet is in the way.
+// Transmittance from a point towards the sun; 0 where the planet is in the way. air: the method's (see MethodAir).
 vec3 sun_through_air(Atmosphere air, float altitude_km, float mu_sun) {
   if (!sun_above_horizon(air.ground_radius_km, altitude_km, mu_sun)) return vec3(0.0, 0.0, 0.0);
   return exp(extinction(air, sun_columns(air, altitude_km, mu_sun)) * -1.0);
@@ -31,10 +31,10 @@ AirSegment no_air() {
 }
 
 // [air_segment]
-// The air from t_a to t_b, behind what `before` holds. One node in the middle, or pairs of Gauss-Legendre nodes; each is a
-// piece of constant source and extinction. Pieces tile the segment: nothing is left out at its end, wherever that is.
-AirSegment append_segment(MethodAir method, AirRay ray, ScatteringTowardsEye scattering, AirSegment before, float t_a, float t_b,
-                          int samples) {
+// Adds the air from t_a to t_b behind `before`. One node in the middle, or pairs of Gauss-Legendre nodes; each stands
+// for a piece of constant source and extinction. The pieces tile the segment, so that nothing is left out at its end.
+AirSegment append_segment(MethodAir method, AirRay ray, ScatteringTowardsEye scattering, AirSegment before, float t_a,
+                          float t_b, int samples) {
   Atmosphere air = method.air;
   AirSegment segment = before;
   // [air_pieces]
@@ -50,8 +50,8 @@ AirSegment append_segment(MethodAir method, AirRay ray, ScatteringTowardsEye sca
       vec3 density = densities(air, point.altitude_km);
       vec3 tau = extinction(air, density) * dt;
       float mu_sun = mu_sun_along(ray, air.ground_radius_km, point.t_km, point.altitude_km);
-      vec3 source = (scattering.rayleigh * density.x + scattering.mie * density.y) * sun_through_air(air, point.altitude_km, mu_sun) *
-                    sun_behind_terrain(point.t_km, point.altitude_km);
+      vec3 source = (scattering.rayleigh * density.x + scattering.mie * density.y) *
+                    sun_through_air(air, point.altitude_km, mu_sun) * sun_behind_terrain(point.t_km, point.altitude_km);
       if (HIGHER_ORDERS) source += source_at(air, ray, point, density, method.chi);
       vec3 mean = vec3(mean_transmittance(tau.x), mean_transmittance(tau.y), mean_transmittance(tau.z));
       segment.radiance += exp(segment.depth * -1.0) * source * mean * dt;
@@ -64,7 +64,8 @@ AirSegment append_segment(MethodAir method, AirRay ray, ScatteringTowardsEye sca
 // [/air_segment]
 
 // [slices]
-// Distance of the far end of the first s of n slices, d = d_max (s / n)^power; and how many slices lie before a distance.
+// Distance of the far end of the first s of n slices, d = d_max (s / n)^power; and how many slices lie before a
+// distance.
 float slice_end(float s, float slices, float farthest_km, float power) { return farthest_km * pow(s / slices, power); }
 float slices_before(float t_km, float slices, float farthest_km, float power) {
   return slices * pow(clamp(t_km / farthest_km, 0.0, 1.0), 1.0 / power);
@@ -72,10 +73,11 @@ float slices_before(float t_km, float slices, float farthest_km, float power) {
 // [/slices]
 
 // [froxel]
-// What a froxel keeps of the air up to its far end, at distance d: not L and T, which change many times over from one slice to
-// the next, but what the air would be if it were homogeneous up to there,
-//   extinction = tau / d,   in_scattering = L / (1 - T),   so that   T = exp(-extinction d),   L = in_scattering (1 - T).
-// Both hardly change with d, and tend to the air's own at the eye. 1 - T is tau phi(tau), phi the mean transmittance.
+// What a froxel keeps of the air up to its far end, at distance d: not L and T, which change by large factors from one
+// slice to the next, but what the air would be if it were homogeneous up to there,
+//   extinction = tau / d,  in_scattering = L / (1 - T),  so that  T = exp(-extinction d),  L = in_scattering (1 - T).
+// Both hardly change with d; at the eye they are those of the air there. 1 - T = tau phi(tau), phi the mean
+// transmittance.
 // [froxel_kept]
 struct Froxel {
   vec3 in_scattering;
@@ -105,7 +107,8 @@ RayLight light_before(Froxel froxel, float d_km) {
 
 // [march_to]
 // All the air up to distance d: the same slices, laid so that the last ends there.
-RayLight march_to(MethodAir method, AirRay ray, ScatteringTowardsEye scattering, float d_km, int slices, int samples, float power) {
+RayLight march_to(MethodAir method, AirRay ray, ScatteringTowardsEye scattering, float d_km, int slices, int samples,
+                  float power) {
   AirSegment segment = no_air();
   float t_a = 0.0;
   for (int k = 0; k < slices; k++) {
@@ -120,7 +123,7 @@ RayLight march_to(MethodAir method, AirRay ray, ScatteringTowardsEye scattering,
 }
 // [/march_to]
 
-// What scatters towards the eye along a ray: the phase functions, which do not change on it.
+// What scatters towards the eye along a ray. The phase functions' angles are the same all along it.
 ScatteringTowardsEye scattering_along(Atmosphere atmosphere, vec3 view, vec3 sun) {
   return scattering_towards_eye(atmosphere, one_minus_cosine(view, sun), one_minus_cosine(view, sun * -1.0));
 }

@@ -1,6 +1,6 @@
-// What the height map does not hold, down to a finger's breadth: noise of thirteen scales, the widest 1.2 km, each 2.7 times finer than
-// the one before. Pure functions; km. Its slopes and tones shade the ground wherever it is seen; near the camera its middle scales
-// are relief that a ray can meet.
+// Detail finer than the height map: noise of thirteen scales from 1.2 km to 8 mm, each 2.7 times finer than the one
+// before. Pure functions; km. Its slopes and tones shade the ground wherever it is seen; near the camera its middle
+// scales are also relief that a ray can meet.
 #ifndef WELKIN_DETAIL_GLSL
 #define WELKIN_DETAIL_GLSL
 
@@ -9,7 +9,7 @@ const float kWidest_km = 1.168;
 const float kFiner = 0.37;
 const float kSteepness = 0.1;  // of a scale: its height is this times its wavelength times noise, 0 ... 1
 
-// Numbers from whole numbers, the same on every device.
+// A pseudorandom number, 0 ... 1, for each lattice point, the same on every device.
 float lattice(int i, int j) {
   uint h = uint(i) * 0x9E3779B1u ^ uint(j) * 0x85EBCA77u;
   h ^= h >> 15;
@@ -47,11 +47,12 @@ struct Detail {
   float patches;  // sum over the scales of 60 m and more, about -0.5 ... 0.5: what grows where
   float grain;    // over those of some metres
   float blades;   // over the finest
-  float sharp;    // share of the scales that are there: how sharp a border can be
-  vec2 tilt;      // slope of all of them, in units of kSteepness
+  float sharp;    // share of the scales that are kept: how sharp a border can be
+  vec2 tilt;      // slope of those of 60 m and less, in units of kSteepness
 };
 
-// A scale is left out where a pixel covers its waves (footprint_km: how wide one is on the ground), so that nothing sparkles.
+// footprint_km: width of a pixel on the ground. Scales whose waves are finer than a pixel are left out: they would
+// sparkle.
 Detail detail_at(vec2 place_km, float footprint_km) {
   Detail detail;
   detail.patches = 0.0;
@@ -80,7 +81,8 @@ Detail detail_at(vec2 place_km, float footprint_km) {
 // [/detail]
 
 // [relief]
-// Height that scales 5 to 7, waves of 8, 3 and 1 m, add to the map's near the camera: 0 ... kRelief_km, less the farther away.
+// Height that scales 5 to 7, waves of 8, 3 and 1 m, add to the map near the camera: 0 ... kRelief_km, less farther
+// away.
 const float kRelief_km = 0.00121;
 const float kReliefReach_km = 0.25;
 const int kReliefSteps = 12;
@@ -98,9 +100,9 @@ float relief_at(vec2 place_km) {
   return height;
 }
 
-// Where a ray that meets the map's surface at t meets the relief that stands on it: steps of equal length through its layer,
-// then where the chord of the last one crosses it. The surface below is taken as the plane that it is nearby; approach: how much
-// nearer the ray comes to it per km; speed: of the ray's place, per km.
+// Where a ray that meets the map's surface at t_km meets the relief that stands on it: equal steps through the relief's
+// layer, then linear interpolation in the step that crosses it. The surface below is taken as a plane. approach: how
+// much nearer the ray comes to it per km; speed: how far the ray's place on the map moves per km.
 float meet_relief(vec2 place_km, vec2 speed, float t_km, float approach) {
   float height = kRelief_km * (1.0 - t_km / kReliefReach_km);
   float layer_km = min(height / max(approach, 0.02), 0.9 * t_km);  // along the ray

@@ -1,6 +1,7 @@
-// The air in front of the camera as a box of texels: directions, and behind each other the slices. A direction is shared by
-// THREADS invocations, each of which marches through one slice of a round as if the eye were at its near end; what lies before
-// it is then put in front. With one thread that is the plain march outwards, slice by slice.
+// The air in front of the camera as a box of texels: x and y are directions, z is the slices behind each other. THREADS
+// invocations share a direction. In each round every one of them marches through one slice as if the eye were at its
+// near end; then the slices before it are put in front. With one thread that is the plain march outwards, slice by
+// slice.
 // Included by froxels.comp (PER_CHANNEL 1) and froxels_mean.comp (0: nothing is bound for the channels' extinction).
 layout(local_size_x = 64) in;
 #include "11_aerial_perspective/block.glsl"
@@ -13,13 +14,13 @@ layout(binding = 3, rgba32f) uniform writeonly image3D froxel_in_scattering;  //
 layout(binding = 4, rgba32f) uniform writeonly image3D froxel_extinction;
 #endif
 
-shared vec3 shared_depth[2][THREADS][RAYS];  // of one round of slices, and of the next
+shared vec3 shared_depth[2][THREADS][RAYS];  // [round % 2]: of two rounds of slices, one after the other
 shared vec3 shared_light[2][THREADS][RAYS];
 
 void store(ivec3 texel, AirSegment segment, float d_km, vec3 sun) {
   const vec3 through = exp(-segment.depth);
   const float mean = -log(max((through.r + through.g + through.b) / 3.0, 1.0e-37));
-  // The mean's own depth, where 1 - T still has digits; below that the depths' mean is the same.
+  // Depth of the mean transmittance. Where 1 - T has too few digits, the mean of the depths is the same.
   const float mean_depth = mean < 1.0e-2 ? (segment.depth.r + segment.depth.g + segment.depth.b) / 3.0 : mean;
   if (!HAS_COLOUR) segment.depth = vec3(mean_depth);
   const Froxel froxel = froxel_of(segment, d_km);
@@ -37,7 +38,7 @@ void main() {
   const ivec2 texel = ivec2(column % count.x, column / count.x);
   const Atmosphere air = atmosphere;
   const MethodAir method = method_air(air, MS_METHOD);
-  // The outer texels lie on the picture's edges: all of the picture is between directions, nothing is extrapolated.
+  // The outer texels lie on the picture's edges, so that every pixel lies between directions of the grid.
   const vec2 place = vec2(texel) / vec2(count - 1) * 2.0 - 1.0;
   const vec3 view = normalize(frame.camera.forward + frame.camera.right * place.x - frame.camera.up * place.y);
   const ClippedRay in_air = clipped_ray(view, frame.camera.altitude_km);
@@ -47,7 +48,8 @@ void main() {
   for (int round = 0; round * THREADS < SLICES; ++round) {
     const int k = min(round * THREADS + part, SLICES - 1);
     const bool own = round * THREADS + part < SLICES && texel.y < count.y;
-    const float t_a = slice_end(float(k), float(SLICES), farthest_km, POWER), t_b = slice_end(float(k + 1), float(SLICES), farthest_km, POWER);
+    const float t_a = slice_end(float(k), float(SLICES), farthest_km, POWER),
+                t_b = slice_end(float(k + 1), float(SLICES), farthest_km, POWER);
     if (THREADS == 1) {
       before = append_segment(method, in_air.air, scattering, before, t_a, t_b, SAMPLES);
       if (own) store(ivec3(texel, k), before, t_b, air.solar_irradiance);

@@ -11,7 +11,8 @@ struct Ground {
 };
 
 // [ground]
-// A share of cover as a map with borders: where the noise is above what the share asks for. Blurred where detail is.
+// Turns a share of cover into patches with borders: cover lies where share plus noise is above 1/2. The fewer scales of
+// detail are kept (sharp, 0 ... 1), the more the borders are blurred.
 float bordered(float share, float rough, float sharp) {
   float blur = 0.5 - 0.42 * sharp;
   return smoothstep(0.5 - blur, 0.5 + blur, share + rough);
@@ -25,9 +26,10 @@ Ground ground_at(vec2 slope, vec4 cover, vec3 bare, vec2 place_km, vec3 up, floa
   float rock = bordered(cover.y / total, 0.8 * rough, detail.sharp);
   float snow = bordered(cover.z / total, 0.8 * rough, detail.sharp);
   float soil = cover.w / total;
-  // Meadow: green in the hollows, straw where it is dry, dark shrubs, and stones that look out of it.
+  // Meadow: green in the hollows, straw where it is dry, dark shrubs, and stones between.
   float dry = smoothstep(-0.28, 0.28, detail.patches + 0.6 * detail.grain + 0.5 * detail.blades);
-  float shrub = smoothstep(0.06, 0.06 + 0.3 - 0.2 * detail.sharp, -0.5 * detail.patches - 0.8 * detail.grain - 0.3 * detail.blades);
+  float shrub = smoothstep(0.06, 0.06 + 0.3 - 0.2 * detail.sharp,
+                           -0.5 * detail.patches - 0.8 * detail.grain - 0.3 * detail.blades);
   float stone = smoothstep(0.30, 0.40, detail.grain + 0.35 * detail.blades - 0.5 * detail.patches);
   vec3 grass = mix(mix(vec3(0.066, 0.086, 0.030), vec3(0.150, 0.126, 0.062), dry), vec3(0.036, 0.050, 0.022), shrub);
   grass *= clamp(1.0 + 1.6 * detail.blades + 0.5 * detail.grain, 0.35, 1.6);

@@ -1,22 +1,23 @@
-// The height map as a surface, what a ray meets of it, and how high its shadow reaches. Pure functions; km, global frame.
-// The including file gives
+// The height map as a surface, what a ray meets of it, and how high its shadow reaches. Pure functions; km, global
+// frame. The including file gives
 //   vec4 patch_corners(ivec2 cell)            heights at a patch's corners: (0, 0), (1, 0), (0, 1), (1, 1)
 //   float highest_in(ivec2 node, int level)   highest corner of 2^level x 2^level patches; level 1 and above
 //
-// Grid coordinates count samples: `grid` is (column, row) + 1, so that patch (i, j) is the square between samples i - 1 and i,
-// j - 1 and j. Inside it the surface is bilinear; the map's outer half samples are level. size + 1 patches a side.
-// Both walks below go along a line from node to node of a tree of maxima: what stays above a node's highest point passes it in
-// one step, however large it is; what does not looks at its parts. In a patch, a bilinear surface over a line is a parabola, so
-// what is found is exact: no distance is too long, and no crest too narrow. Tevs 2008, "Maximum mipmaps".
+// Grid coordinates count samples: `grid` is (column, row) + 1, so that patch (i, j) is the square between samples i - 1
+// and i, j - 1 and j. Inside it the surface is bilinear; the map's outer half samples are level. size + 1 patches a
+// side. Both walks below follow a line from node to node of a tree of maxima. A line that stays above a node's highest
+// point passes the node in one step, however large it is; otherwise the walk looks at the node's parts. In a patch the
+// bilinear surface along a line is a parabola, so that the result is exact at any distance and for the narrowest crest.
+// Tevs 2008, "Maximum mipmaps".
 #ifndef WELKIN_HEIGHT_FIELD_GLSL
 #define WELKIN_HEIGHT_FIELD_GLSL
 
 #include "03_planet_and_rays/ray_sphere.glsl"
 #include "11_aerial_perspective/terrain.glsl"
 
-const int kMostVisits = 512;         // of nodes by one walk; seen: below 200
-const float kBeyondEdge = 1.0e-3;    // of a patch, so that a step does not end on the border it makes for
-const float kDrowned_km = 1.0e-4;    // so far below the sphere a ray outside of the map has met it, whatever the rounding
+const int kMostVisits = 512;         // nodes that one walk may look at; measured: fewer than 200
+const float kBeyondEdge = 1.0e-3;    // of a patch: how far a step goes beyond the border it leads to
+const float kDrowned_km = 1.0e-4;    // a ray outside of the map this far below the sphere has met it, despite rounding
 
 struct HeightField {
   float ground_radius_km;
@@ -32,7 +33,7 @@ vec2 grid_at(HeightField field, vec2 place_km) {
 }
 
 // [patch_along]
-// The surface from `grid` on along `delta`, both inside of one patch: c.x + c.y s + c.z s^2, s = 0 ... 1.
+// The surface from in_patch to in_patch + delta, both inside one patch: c.x + c.y s + c.z s^2, s = 0 ... 1.
 vec3 patch_along(vec4 corners, vec2 in_patch, vec2 delta) {
   float across = corners.y - corners.x;
   float down = corners.z - corners.x;
@@ -53,8 +54,8 @@ float first_root(vec3 c) {
 }
 // [/patch_along]
 
-// Steps of `rate` from a place between two borders to the one it makes for. On a border already, and along it or out: as if it
-// lay a little further, since a line that runs along one would never leave it.
+// How many steps of `rate` lead from a place between two borders to the border ahead. Where that is nearer than
+// kBeyondEdge, it counts as that far away: a line along a border would otherwise never move on.
 float steps_between(float at, float low, float high, float rate) {
   float room = rate > 0.0 ? high - at : at - low;
   return (room < kBeyondEdge ? kBeyondEdge : room) / max(abs(rate), 1.0e-9);
@@ -63,13 +64,14 @@ float steps_between(float at, float low, float high, float rate) {
 // How far a line may go before it leaves a node, or the map.
 float steps_to_border(HeightField field, vec2 grid, vec2 rate, ivec2 node, int level) {
   float end = float(field.size) + 0.5;
-  float across = steps_between(grid.x, max(float(node.x << level), 0.5), min(float((node.x + 1) << level), end), rate.x);
+  float across =
+      steps_between(grid.x, max(float(node.x << level), 0.5), min(float((node.x + 1) << level), end), rate.x);
   float down = steps_between(grid.y, max(float(node.y << level), 0.5), min(float((node.y + 1) << level), end), rate.y);
   return min(across, down);
 }
 
 // [first_hit]
-// What a ray meets. An edge is a crest that it passes by less than a pixel: the pixel shows some of it.
+// What a ray meets. An edge is a crest that it passes so closely that the pixel shows some of it.
 struct Hit {
   float t_km;       // of the terrain, below 0: none
   float approach;   // by how much the ray comes nearer to the surface per km, where it meets it
@@ -78,10 +80,12 @@ struct Hit {
   int visits;       // nodes that were looked at
 };
 
-// Where a ray first meets the terrain. The sphere outside of the map may be in the way before it does. It starts at start_km, `altitude_km` above the sphere, mu: cosine to the vertical there, begins_km from the eye. The ray's
-// altitude bends up as the ground falls away; its place runs at a speed that hardly changes over a node. pixel: how wide one is
-// at a distance of 1.
-Hit first_hit(HeightField field, vec3 start_km, vec3 direction, float altitude_km, float mu, float begins_km, float pixel) {
+// Where a ray first meets the terrain, unless it meets the sphere outside of the map before. The ray starts at
+// start_km, begins_km from the eye and altitude_km above the sphere; mu: its cosine to the vertical there; pixel: width
+// of a pixel at a distance of 1. Along the ray the altitude bends up, as the ground falls away; the speed of the ray's
+// place on the map hardly changes over a node.
+Hit first_hit(HeightField field, vec3 start_km, vec3 direction, float altitude_km, float mu, float begins_km,
+              float pixel) {
   Hit hit;
   hit.t_km = -1.0;
   hit.approach = 1.0;
@@ -134,7 +138,8 @@ Hit first_hit(HeightField field, vec3 start_km, vec3 direction, float altitude_k
         return hit;
       }
       // [/pass_or_split]
-      // The nearest it comes to the patch, if it rises from it again: an edge, half a pixel of it at a clearance of 0.
+      // An edge: where the ray comes nearest to the patch before it rises again. At a clearance of 0 it covers half a
+      // pixel.
       float near = over.z > 0.0 ? clamp(-0.5 * over.y / over.z, 0.0, 1.0) : (over.y + over.z < 0.0 ? 1.0 : 0.0);
       float height = over.x + near * (over.y + near * over.z);
       float covered = 0.5 - 0.5 * height / max(half_pixel_km, 1.0e-9);
@@ -152,10 +157,10 @@ Hit first_hit(HeightField field, vec3 start_km, vec3 direction, float altitude_k
 // [/first_hit]
 
 // [shadow_over]
-// How high the column above a place has to reach to see the sun's centre past all terrain from start_km on towards it, and how
-// far away (y) what decides it stands: the largest shadow_altitude() of a point of the surface. `towards`: unit vector of the
-// map. What lies between two borders of a node can rise no higher than its highest point does at the nearest, or where a
-// sunray from below the horizontal is lowest.
+// x: the altitude above a place from which the sun's centre is seen past all terrain that lies start_km or more towards
+// the sun: the largest shadow_altitude() of the surface's points. y: the distance to that point. `towards`: unit vector
+// on the map. Inside a node no point can exceed the node's highest point at its nearest distance, or where a sunray
+// from below the horizontal is lowest.
 vec2 shadow_over(HeightField field, vec2 place_km, vec2 towards, float tan_elevation, float start_km, out int visits) {
   float patch_km = field.extent_km / float(field.size);
   vec2 from = grid_at(field, place_km);
@@ -178,7 +183,7 @@ vec2 shadow_over(HeightField field, vec2 place_km, vec2 towards, float tan_eleva
         continue;
       }
     } else {
-      // Surface less sunray, a parabola: its ends, or its top.
+      // Surface minus sunray is a parabola: largest at an end, or at its top.
       vec3 c = patch_along(patch_corners(node), vec2(grid.x - float(node.x), grid.y - float(node.y)), rate * ds);
       c.x = shadow_altitude(field.ground_radius_km, c.x, s, tan_elevation);
       c.y -= ds * (tan_elevation + s / field.ground_radius_km);

@@ -1,4 +1,5 @@
-// The height map and the tree of its maxima as images, for the walks of height_field.glsl. Bindings 0 and 1, constants 0 to 4.
+// The height map and the tree of its maxima as images, for the walks of height_field.glsl. Bindings 0 and 1, constants
+// 0 to 4.
 #ifndef WELKIN_HEIGHT_MAPS_GLSL
 #define WELKIN_HEIGHT_MAPS_GLSL
 
@@ -9,7 +10,7 @@ layout(constant_id = 3) const int MAP_SIZE = 1024;   // samples a side
 layout(constant_id = 4) const int TREE_LEVELS = 7;   // of the tree of maxima
 
 layout(binding = 0) uniform sampler2D height_map;
-layout(binding = 1) uniform sampler2D height_maxima;  // levels 1, 2, ... below each other; laid by tree_of_maxima()
+layout(binding = 1) uniform sampler2D height_maxima;  // levels 1, 2, ... below each other; made by height_maxima()
 
 // [height_maps]
 vec4 patch_corners(ivec2 cell) {

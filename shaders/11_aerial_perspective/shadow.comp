@@ -1,5 +1,6 @@
-// For every place of the map: from which altitude on the column of air above it sees the sun past the terrain, how wide the
-// half shadow is there, and how high the ground is. A walk over the height map towards the sun, to the map's end.
+// For every place of the map, in km: the altitude from which the sun's centre is seen past the terrain, the altitude
+// over which its radius rises (half the penumbra), and the height of the ground. Walks over the height map towards the
+// sun, to the map's end.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -22,7 +23,7 @@ void main() {
   const vec3 level = sun.xyz - up * mu;
   const float sine = length(level);
   const vec2 towards = sine > 1.0e-4 ? level.xy / sine : vec2(0.0);
-  // Nearer than a texel, of either map, the slope tells what the sun sees, not the shadow.
+  // Terrain nearer than a texel of either map is left out: there the slope itself says how the sun lights the ground.
   const float start_km = 0.75 * EXTENT_KM / float(min(MAP_SIZE, size.x));
   int visits = 0;
   const vec2 over = shadow_over(field, place, towards, mu / max(sine, 1.0e-4), start_km, visits);

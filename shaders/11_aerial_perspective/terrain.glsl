@@ -12,7 +12,8 @@ vec3 on_planet(float ground_radius_km, vec2 place_km, float altitude_km) {
   float d2 = min(dot(place_km, place_km), ground_radius_km * ground_radius_km);
   float upright = sqrt(ground_radius_km * ground_radius_km - d2);  // cosine of the tilt, times R
   float scale = altitude_km / ground_radius_km;
-  return vec3(place_km.x * (1.0 + scale), place_km.y * (1.0 + scale), upright * scale - d2 / (ground_radius_km + upright));
+  return vec3(place_km.x * (1.0 + scale), place_km.y * (1.0 + scale),
+              upright * scale - d2 / (ground_radius_km + upright));
 }
 // [/point_above]
 
@@ -45,7 +46,7 @@ float disc_above(float above) {
   return clamp(0.5 + (e * sqrt(1.0 - e * e) + asin(e)) * 0.31830988618379067, 0.0, 1.0);
 }
 
-// How high a column of air has to reach to see the sun past something of altitude h at horizontal distance s towards it:
+// The altitude from which the sun is seen past something of altitude h at the horizontal distance s towards the sun:
 // the sunray that grazes it comes down by s tan(elevation), and the ground curves away by s^2 / 2R on the way.
 float shadow_altitude(float ground_radius_km, float altitude_km, float s_km, float tan_elevation) {
   return altitude_km - s_km * tan_elevation - s_km * s_km / (2.0 * ground_radius_km);

@@ -1,5 +1,5 @@
-// From the linear picture to 8 bits, until chapter 06 teaches how. Mode 0: values as they are, clamped. Mode 1:
-// 1 - exp(-exposure L), then the sRGB curve (IEC 61966-2-1). A value that is not finite becomes magenta: seen, not hidden.
+// From the linear picture to 8 bits, until chapter 06 teaches how. Mode 0: values as they are, clamped. Mode 1: 1 -
+// exp(-exposure L), then the sRGB curve (IEC 61966-2-1). A value that is not finite becomes magenta: seen, not hidden.
 #version 460
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0, rgba32f) uniform readonly image2D picture;
@@ -11,7 +11,8 @@ layout(push_constant) uniform Push {
 } push;
 
 vec3 srgb_from_linear(vec3 linear) {
-  return mix(12.92 * linear, 1.055 * pow(max(linear, vec3(0.0031308)), vec3(1.0 / 2.4)) - 0.055, greaterThan(linear, vec3(0.0031308)));
+  return mix(12.92 * linear, 1.055 * pow(max(linear, vec3(0.0031308)), vec3(1.0 / 2.4)) - 0.055,
+             greaterThan(linear, vec3(0.0031308)));
 }
 
 void main() {

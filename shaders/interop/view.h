@@ -1,7 +1,7 @@
 // What every pass of a frame graph may know of the frame: the block "View". Included by C++ and by GLSL.
 //
-// km; the global frame (origin on the ground at the scene's place, x east, y north, z up there) where nothing else is said;
-// the cameras' vectors are in their own local frames (interop/camera.h). std140.
+// km; the global frame (origin on the ground at the scene's place, x east, y north, z up there) where nothing else is
+// said; the cameras' vectors are in their own local frames (interop/camera.h). std140.
 #ifndef WELKIN_INTEROP_VIEW_H
 #define WELKIN_INTEROP_VIEW_H
 
