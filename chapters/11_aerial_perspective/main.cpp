@@ -5,7 +5,6 @@
 #include "chapters/08_transmittance_lut/transmittance_lut.hpp"
 #include "chapters/10_sky_view_lut/sky.hpp"
 #include "chapters/11_aerial_perspective/lit_terrain.hpp"
-#include "chapters/11_aerial_perspective/signs.hpp"
 #include "chapters/11_aerial_perspective/terrain_truth.hpp"
 
 using namespace welkin;
@@ -32,7 +31,7 @@ int main(int argc, char** argv) {
       .window = open_window_system,
       .still_passes = {"sky", "compose", "histogram", "exposure", "display"},
       .extra_bytes = 34 << 20,
-      .effects = {air(), transmittance_table(), multiple_scattering_table(), sky_view(), sky(), terrain(), signs(),
+      .effects = {air(), transmittance_table(), multiple_scattering_table(), sky_view(), sky(), terrain(),
                   terrain_shadows(), aerial_perspective(), lit_terrain(), exposure(), display()},
       .probe = probe_sky};  // a probe's ray has no place on the map: it sees chapter 10's sky
   return app::run(argc, argv, chapter);

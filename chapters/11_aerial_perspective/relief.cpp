@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/packing.hpp>
 #include <glm/trigonometric.hpp>
+#include <span>
 
 #include "common/app/camera.hpp"
 
@@ -118,8 +119,9 @@ void ViewChange::note(const app::Frame& frame) {
   position_km_ = frame.position_km, fresh_ = false;
 }
 
-gpu::Image uploaded_map(const gpu::Device& device, const char* name, VkFormat format, VkExtent2D size,
-                        std::span<const std::byte> texels) {
+// Makes an image that passes sample and fills it with rows of texels, once, before any frame.
+static gpu::Image uploaded_map(const gpu::Device& device, const char* name, VkFormat format, VkExtent2D size,
+                               std::span<const std::byte> texels) {
   gpu::Image image = gpu::create_image(device, name, size, format, kMapUsage);
   const gpu::Buffer staging =
       gpu::create_buffer(device, "staging", texels.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Where::upload);

@@ -12,6 +12,7 @@ namespace {
 
 struct SurfacesPush {
   glm::vec4 bare_albedo;
+  SignPlaces signs;
 };
 
 // [surfaces]
@@ -21,6 +22,7 @@ app::Effect first_surfaces() {
   effect.wanted = [](const Scene& scene, const Settings&) -> app::Wanted {
     return {scene.terrain.has_value(), "[terrain]"};
   };
+  effect.key = [](const Scene& scene, const Settings&) { return has_signs(scene) ? "signs" : ""; };
   effect.declare = [](app::Builder& builder, app::Board& board) {
     const app::Context& context = builder.context;
     const TerrainMaps& maps = board.get<TerrainMaps>("terrain");
@@ -28,7 +30,8 @@ app::Effect first_surfaces() {
     board.offer(images);
     graph::Pass pass{.name = "surfaces", .changed = [](const app::Frame&) { return true; }};  // the albedo is a knob
     pass.steps.push_back({.shader = "11_aerial_perspective/surfaces.comp",
-                          .constants = {{"EXTENT_KM", static_cast<float>(context.scene.terrain->extent_km)},
+                          .constants = {{"HAS_SIGNS", has_signs(context.scene)},
+                                        {"EXTENT_KM", static_cast<float>(context.scene.terrain->extent_km)},
                                         {"RADIUS_KM", static_cast<float>(context.scene.planet.ground_radius_km)},
                                         {"HAS_DETAIL", context.settings.choice("terrain.detail") == "on"}},
                           .bindings = {{"terrain_distance", maps.distance},
@@ -37,10 +40,9 @@ app::Effect first_surfaces() {
                                        {"normals", images.normals},
                                        {"albedos", images.albedos}},
                           .record = [context, images](const graph::Recorder& r) {
-                            r.push(SurfacesPush{{context.scene.planet.ground_albedo, 0.0}})
+                            r.push(SurfacesPush{{context.scene.planet.ground_albedo, 0.0}, sign_places(context.scene)})
                                 .dispatch_over(r.graph.image(images.normals).size);
                           }});
-    add_signs(pass.steps.front(), board, maps.cover);
     builder.graph.add(std::move(pass));
   };
   return effect;
@@ -64,7 +66,7 @@ app::Truth terrain_truth() {
   truth.make = [](const app::Context& context) -> std::unique_ptr<app::Program> {
     if (!context.scene.terrain) return std::make_unique<GroundTruth>(context);
     return std::make_unique<app::Composition>(
-        context, std::vector<app::Effect>{terrain(), signs(), first_surfaces(), traced_terrain()}, probe_paths);
+        context, std::vector<app::Effect>{terrain(), first_surfaces(), traced_terrain()}, probe_paths);
   };
   return truth;
 }

@@ -19,6 +19,9 @@ layout(binding = 2) uniform sampler2D shadow_map;
 layout(push_constant) uniform Push {
   float extent_km;    // of the map
   float farthest_km;  // froxel
+#ifdef WELKIN_WITH_SIGNS
+  vec4 sign_places[7];  // see signs.glsl
+#endif
 };
 
 vec3 read_multiple_scattering_table(vec2 uv) { return textureLod(multiple_scattering_table, uv, 0.0).rgb; }
@@ -29,8 +32,9 @@ vec3 ray_start_km;
 vec3 ray_direction;
 
 // [sun_behind_terrain]
-// The shadow map says for every place from which altitude on the sun is seen, how wide the half shadow is, and how high the
-// ground. The ground itself asks how far that altitude is above the ground there: heights of one map, filtered in one way. With
+// The shadow map says for every place from which altitude on the sun is seen, how wide the half shadow is, and how high
+// the ground. The ground itself asks how far that altitude is above the ground there: heights of one map, filtered in one
+// way. With
 // its own altitude, which is known finer, it would be in shadow wherever it lies lower than between two texels.
 vec3 shadow_at(vec2 place_km) { return textureLod(shadow_map, map_uv(place_km, extent_km), 0.0).rgb; }
 
@@ -54,7 +58,9 @@ float sun_behind_terrain(float t_km, float altitude_km) {
 
 #include "11_aerial_perspective/aerial.glsl"
 
-vec3 to_global(vec3 local) { return frame.east * local.x + frame.north * local.y + cross(frame.east, frame.north) * local.z; }
+vec3 to_global(vec3 local) {
+  return frame.east * local.x + frame.north * local.y + cross(frame.east, frame.north) * local.z;
+}
 
 // Sets the ray of sun_behind_terrain() and clips it to the air; gives how far away that begins.
 struct ClippedRay {
@@ -65,7 +71,9 @@ ClippedRay clipped_ray(vec3 view, float altitude_km) {
   ClippedRay ray;
   ray.air = enter_air(atmosphere, altitude_km, view, frame.camera.sun);
   ray.begins_km = 0.0;
-  if (altitude_km > atmosphere.top_km) ray.begins_km = max(distance_to_shell_from_outside(atmosphere.ground_radius_km, altitude_km, view.z, length(view.xy), atmosphere.top_km), 0.0);
+  if (altitude_km > atmosphere.top_km)
+    ray.begins_km = max(distance_to_shell_from_outside(atmosphere.ground_radius_km, altitude_km, view.z,
+                                                       length(view.xy), atmosphere.top_km), 0.0);
   ray_direction = to_global(view);
   ray_start_km = frame.position_km + ray_direction * ray.begins_km;
   return ray;

@@ -1,17 +1,31 @@
 // A row of signs 1, 2, 5, 10, 20, 50 and 100 km away, so that distance can be seen. Pure functions; km, global frame.
 //
-// Each stands upright, faces the scene's place, and is as large as it is far: all look the same size from there, 10 degrees above
-// the horizontal and 7.4 degrees apart. A board is 10 hundredths of its distance wide and 6 high.
+// Each stands upright, faces the scene's place, and is as large as it is far: all look the same size from there, 10
+// degrees above the horizontal and 7.4 degrees apart. A board is 10 hundredths of its distance wide and 6 high.
 #ifndef WELKIN_SIGNS_GLSL
 #define WELKIN_SIGNS_GLSL
 
-// A sign as chapters/11_aerial_perspective/signs.cpp places it; its vectors are unit.
+const int kSigns = 7;
+
+// A sign as chapters/11_aerial_perspective/signs.cpp places it, and its unit vectors: along the board, along the post,
+// and towards the scene's place. With (e, n, z) the foot and d = |(e, n)|, up is (e, n, R + z) / R.
 struct SignBoard {
-  vec3 foot_km;  // where the post meets the ground
+  vec3 foot_km;
   float distance_km;
-  vec3 side, up;
-  vec3 normal;  // towards the scene's place
+  vec3 side, up, normal;
 };
+
+SignBoard sign_board(vec4 place_km, float ground_radius_km) {
+  float d = place_km.w;
+  float up_z = 1.0 + place_km.z / ground_radius_km;
+  SignBoard sign;
+  sign.foot_km = place_km.xyz;
+  sign.distance_km = d;
+  sign.side = vec3(place_km.y / d, place_km.x / -d, 0.0);
+  sign.up = vec3(place_km.x / ground_radius_km, place_km.y / ground_radius_km, up_z);
+  sign.normal = vec3(up_z * place_km.x / -d, up_z * place_km.y / -d, d / ground_radius_km);
+  return sign;
+}
 
 // Where a ray meets a sign: t_km < 0 if it does not. paint: reflectance; share: of the pixel that it covers.
 struct SignHit {
@@ -35,7 +49,7 @@ bool on_digit(int digit, float x, float y) {
   return on || ((lit & 64) != 0 && abs(y - 1.0) < 0.5 * w);
 }
 
-// The board's paint at (u, v), -1 ... 1 by 0 ... 1: the number of km in black on white, and a black and white band below it.
+// The board's paint at (u, v), -1 ... 1 by 0 ... 1: the number of km in black on white, and a black and white band below.
 float board_paint(int k, float u, float v) {
   if (abs(u) > 0.96 || v > 0.95 || v < 0.04) return 0.02;
   if (v < 0.26) return u < 0.0 ? 0.02 : 0.85;
@@ -68,13 +82,15 @@ SignHit meet_sign(SignBoard sign, int k, float ground_radius_km, vec3 start_km, 
   if (abs(facing) < 1.0e-6) return hit;
   float t = dot(foot, sign.normal) / facing;
   if (t <= 0.0) return hit;
-  vec3 at = direction * t - foot;
-  float u = dot(at, sign.side) / d;
-  float v = dot(at, sign.up) / d - 0.5 * d / ground_radius_km;  // the ground there is that much lower
+  // The board's plane is met at direction t - foot. Most rays pass to the left or right: they need no more than u.
+  float w = t * pixel / d;  // of a pixel, in distances of the sign
+  float u = (t * dot(direction, sign.side) - dot(foot, sign.side)) / d;
+  if (abs(u) >= 0.05 + 0.5 * w) return hit;
+  float height_km = t * dot(direction, sign.up) - dot(foot, sign.up);
+  float v = height_km / d - 0.5 * d / ground_radius_km;  // the ground there is that much lower
   // Of board and post as much as is in a pixel's square; what is painted there, by nine points of it.
-  float w = t * pixel / d;
   float board = covered(u, -0.05, 0.05, w) * covered(v, 0.15, 0.21, w);
-  float post = dot(at, sign.up) > 0.0 ? covered(u, -0.0015, 0.0015, w) * covered(v, -1.0, 0.15, w) : 0.0;
+  float post = height_km > 0.0 ? covered(u, -0.0015, 0.0015, w) * covered(v, -1.0, 0.15, w) : 0.0;
   if (board + post <= 0.0) return hit;
   float paint = 0.0;
   for (int i = 0; i < 9; i++) {

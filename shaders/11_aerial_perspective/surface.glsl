@@ -1,6 +1,6 @@
-// What a pixel's ray meets first, terrain or a sign: where, its normal and its albedo. The same functions for the picture and for the
-// path tracer's truth. Pure, but for the maps, which the including file gives:
-//   vec2 slope_at(vec2 uv)   vec4 cover_at(vec2 uv)   int sign_count()   SignBoard sign_board(int k)
+// What a pixel's ray meets first, terrain or a sign: where, its normal and its albedo. The same functions for the picture
+// and for the path tracer's truth. Pure, but for the maps, which the including file gives:
+//   vec2 slope_at(vec2 uv)   vec4 cover_at(vec2 uv)   vec4 sign_place(int k)
 #ifndef WELKIN_SURFACE_GLSL
 #define WELKIN_SURFACE_GLSL
 
@@ -20,7 +20,8 @@ struct Surface {
 
 // [surfaces_seen]
 // The terrain at a distance along a ray. pixel: how wide one is at a distance of 1.
-Surface terrain_surface(float ground_radius_km, float extent_km, vec3 bare, vec3 start_km, vec3 direction, float t_km, float pixel) {
+Surface terrain_surface(float ground_radius_km, float extent_km, vec3 bare, vec3 start_km, vec3 direction, float t_km,
+                        float pixel) {
   Surface surface;
   surface.t_km = t_km;
   surface.is_terrain = true;
@@ -48,14 +49,16 @@ SignSeen sign_before(float ground_radius_km, vec3 start_km, vec3 direction, floa
   seen.surface.t_km = t_km;
   seen.surface.is_terrain = false;
   seen.share = 0.0;
-  for (int k = 0; k < sign_count(); k++) {
-    SignHit hit = meet_sign(sign_board(k), k, ground_radius_km, start_km, direction, pixel);
+  for (int k = 0; k < kSigns; k++) {
+    SignBoard sign = sign_board(sign_place(k), ground_radius_km);
+    SignHit hit = meet_sign(sign, k, ground_radius_km, start_km, direction, pixel);
     if (hit.t_km < 0.0 || hit.t_km >= seen.surface.t_km) continue;
     seen.share = hit.share;
     seen.surface.t_km = hit.t_km;
     seen.surface.normal = dot(hit.normal, direction) > 0.0 ? hit.normal * -1.0 : hit.normal;
     seen.surface.albedo = vec3(hit.paint, hit.paint, hit.paint);
   }
+  if (seen.share <= 0.0) return seen;
   seen.surface.place_km = place_below(ground_radius_km, start_km + direction * seen.surface.t_km);
   seen.surface.up = up_at(ground_radius_km, seen.surface.place_km);
   return seen;

@@ -16,12 +16,14 @@ layout(binding = 1) uniform sampler2D slope_map;
 layout(binding = 2) uniform sampler2D cover_map;
 layout(binding = 3, rgba32f) uniform writeonly image2D normals;  // w: distance, 0: nothing is met
 layout(binding = 4, rgba32f) uniform writeonly image2D albedos;
-layout(binding = 5) uniform sampler2D sign_boards;
 layout(push_constant) uniform Push {
-  vec4 bare_albedo;  // rgb: of the bare ground
+  vec4 bare_albedo;      // rgb: of the bare ground
+  vec4 sign_places[7];  // see signs.glsl
 };
 
-#include "11_aerial_perspective/surface_maps.glsl"
+vec2 slope_at(vec2 uv) { return textureLod(slope_map, uv, 0.0).rg; }
+vec4 cover_at(vec2 uv) { return textureLod(cover_map, uv, 0.0); }
+vec4 sign_place(int k) { return sign_places[k]; }
 #include "11_aerial_perspective/surface.glsl"
 
 // [surfaces]
@@ -35,12 +37,15 @@ void main() {
   const vec4 terrain = imageLoad(terrain_distance, pixel);
   bool seen = terrain.x > 0.0;
   Surface surface;
-  if (seen) surface = terrain_surface(RADIUS_KM, EXTENT_KM, bare_albedo.rgb, frame.position_km, direction, terrain.x, HAS_DETAIL ? pixel_rad : kNoDetail);
+  if (seen)
+    surface = terrain_surface(RADIUS_KM, EXTENT_KM, bare_albedo.rgb, frame.position_km, direction, terrain.x,
+                              HAS_DETAIL ? pixel_rad : kNoDetail);
   if (HAS_SIGNS) {
     const SignSeen sign = sign_before(RADIUS_KM, frame.position_km, direction, seen ? terrain.x : 1.0e9, pixel_rad);
     if (sign.share > 0.5) surface = sign.surface, seen = true;  // a path meets one surface or the other
   }
-  const vec3 local = vec3(dot(surface.normal, frame.east), dot(surface.normal, frame.north), dot(surface.normal, above));
+  const vec3 local =
+      vec3(dot(surface.normal, frame.east), dot(surface.normal, frame.north), dot(surface.normal, above));
   imageStore(normals, pixel, seen ? vec4(local, surface.t_km) : vec4(0.0));
   imageStore(albedos, pixel, seen ? vec4(surface.albedo, 1.0) : vec4(0.0));
 }

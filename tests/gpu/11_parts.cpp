@@ -73,7 +73,7 @@ Light truth_to(const reference::Planet& planet, const SkyRay& ray, double d) {
 std::vector<app::Effect> terrain_effects() {
   std::vector<app::Effect> effects = sky_effects();
   for (app::Effect& effect :
-       std::vector<app::Effect>{terrain(), signs(), terrain_shadows(), aerial_perspective(), lit_terrain()})
+       std::vector<app::Effect>{terrain(), terrain_shadows(), aerial_perspective(), lit_terrain()})
     effects.push_back(std::move(effect));
   return effects;
 }

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "chapters/11_aerial_perspective/lit_terrain.hpp"
-#include "chapters/11_aerial_perspective/signs.hpp"
 #include "common/app/camera.hpp"
 #include "common/app/renderer.hpp"
 #include "tests/gpu/05_rays.hpp"

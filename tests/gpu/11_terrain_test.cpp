@@ -165,34 +165,34 @@ TEST_CASE("a surface gives back what falls on it") {
   CHECK(answers[3].radiance[0] * pi == Approx(wall).epsilon(1e-5));
 }
 
-TEST_CASE("each sign stands upright on the ground at its distance and faces the scene's place") {
+TEST_CASE("each sign stands on the ground at its distance and in its direction") {
   const double radius_km = 6360.0, azimuth = 0.3;
-  const std::vector<SignBoard> boards = sign_boards(radius_km, azimuth);
+  const SignPlaces places = sign_places(radius_km, azimuth);
   const double distances[] = {1, 2, 5, 10, 20, 50, 100};
-  REQUIRE(boards.size() == 7);
   for (int k = 0; k < 7; ++k) {
-    const SignBoard& board = boards[k];
-    const glm::dvec3 from_centre = board.foot_km + glm::dvec3(0.0, 0.0, radius_km);
-    CHECK(std::hypot(board.foot_km.x, board.foot_km.y) == Approx(distances[k]).epsilon(1e-12));
-    CHECK(std::atan2(board.foot_km.x, board.foot_km.y) == Approx(azimuth + (k - 3) * 0.13).epsilon(1e-12));
-    CHECK(glm::length(from_centre) == Approx(radius_km).epsilon(1e-14));
-    CHECK(glm::length(board.up - from_centre / radius_km) < 1e-12);
-    CHECK(std::abs(glm::dot(board.normal, board.up)) < 1e-12);
-    CHECK(std::abs(glm::dot(board.normal, board.side)) < 1e-12);
-    CHECK(glm::dot(board.normal, glm::normalize(-board.foot_km)) > 0.9999);
+    const glm::dvec4 place(places[k]);
+    CHECK(place.w == Approx(distances[k]).epsilon(1e-7));
+    CHECK(std::hypot(place.x, place.y) == Approx(distances[k]).epsilon(1e-7));
+    CHECK(std::atan2(place.x, place.y) == Approx(azimuth + (k - 3) * 0.13).margin(1e-6));
+    CHECK(std::hypot(place.x, place.y, place.z + radius_km) == Approx(radius_km).epsilon(1e-10));
   }
 }
 
-TEST_CASE("a ray meets a sign where its board is, and passes above it and between board and ground") {
+TEST_CASE("a ray meets a sign where its board is, and passes above it and beside its post") {
+  const double radius_km = 6360.0;
   std::vector<AirItem> items;
   std::vector<double> expected;
   for (const double d : {1.0, 20.0, 100.0})
-    for (const double tilt : {0.0, 0.2})
+    for (const double azimuth : {0.0, 2.0})
       for (const double height : {0.18, 0.3, 0.1}) {  // of the board's middle, above it, beside the post; in distances
-        // The board is where (0, d, 0) + s up is, s = height d and what the ground has fallen by.
-        const double s = height * d + 0.5 * d * d / 6360.0, x = height == 0.1 ? 0.01 * d : 0.0;
-        const glm::dvec3 at(x, d + s * std::sin(tilt), s * std::cos(tilt)), ray = glm::normalize(at);
-        items.push_back({AirPart::sign, {0, 0, 0, d}, {ray.x, ray.y, ray.z, 0}, {tilt, d, 0, 0}});
+        const double above_centre = std::sqrt(radius_km * radius_km - d * d);
+        const glm::dvec3 foot(d * std::sin(azimuth), d * std::cos(azimuth), -d * d / (radius_km + above_centre)),
+            up = (foot + glm::dvec3(0, 0, radius_km)) / radius_km, side(std::cos(azimuth), -std::sin(azimuth), 0.0);
+        // Along the post: the height above the tangent plane's level, and what the ground has fallen by.
+        const glm::dvec3 at =
+            foot + up * (height * d + 0.5 * d * d / radius_km) + side * (height == 0.1 ? 0.01 * d : 0.0);
+        const glm::dvec3 ray = glm::normalize(at);
+        items.push_back({AirPart::sign, {0, 0, 0, 0}, {ray.x, ray.y, ray.z, d}, {foot.x, foot.y, foot.z, 0}});
         expected.push_back(height == 0.18 ? glm::length(at) : -1.0);
       }
   const std::vector<AirAnswer> answers = evaluate_air(reference::earth(), items);

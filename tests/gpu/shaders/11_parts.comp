@@ -123,13 +123,8 @@ RayLight run(Atmosphere air, vec4 a, vec4 b, vec4 c) {
     light.transmittance = ground.normal;
     return light;
   }
-  // A sign straight north that faces the origin: a.w away, its foot at (0, c.y, c.z), tilted by c.x.
-  SignBoard sign;
-  sign.distance_km = a.w;
-  sign.foot_km = vec3(0.0, c.y, c.z);
-  sign.side = vec3(1.0, 0.0, 0.0);
-  sign.up = vec3(0.0, sin(c.x), cos(c.x));
-  sign.normal = vec3(0.0, -cos(c.x), sin(c.x));
+  // The sign whose foot is at c.xyz, b.w away.
+  const SignBoard sign = sign_board(vec4(c.xyz, b.w), air.ground_radius_km);
   const SignHit hit = meet_sign(sign, 0, air.ground_radius_km, a.xyz, b.xyz, 1.0e-4);
   light.radiance = vec3(hit.t_km, hit.paint, 0.0);
   light.transmittance = hit.normal;
