@@ -127,7 +127,7 @@ std::vector<Knob> noise_knobs() {
        .meaning = "of fBm, each twice as fine and half as strong as the one before",
        .minimum = 1,
        .maximum = 6,
-       .initial = 4,
+       .initial = 3,
        .integer = true,
        .ladder = {1, 2, 3, 4, 5, 6},
        .rebuilds = true},

@@ -62,11 +62,12 @@ float worley_fbm(vec2 p, int cells, Octaves octaves, uint seed) {
 }
 
 // [perlin_worley]
-// Perlin's range 0 ... 1 pushed up to begin at the Worley noise: remap(perlin, 0, 1, worley, 1). The result is at least either
-// of them ("dilated"): Perlin's connected wisps, puffed up with Worley's domes.
+// Perlin's range 0 ... 1 pushed up to begin at the Worley noise: remap(perlin^2, 0, 1, worley, 1). The result is at least either
+// of them ("dilated"): Perlin's connected banks, puffed up with Worley's domes. Squared, because most of Perlin's numbers lie
+// near the middle, where they would drown the domes.
 float dilated(float perlin, float worley) {
   precise float low = 0.5 + 0.5 * perlin;  // from -1 ... 1
-  precise float value = worley + low * (1.0 - worley);
+  precise float value = worley + low * low * (1.0 - worley);
   return value;
 }
 // [/perlin_worley]
@@ -96,7 +97,7 @@ vec3 curl(vec3 p, int cells, Octaves octaves, uint seed) {
 // [recipes]
 vec4 base_texel(vec3 p, Octaves octaves, uint seed) {
   float low = perlin_fbm(p, 4, octaves, seed).x;
-  float domes = worley_fbm(p, 4, octaves, seed + 10u);
+  float domes = worley_fbm(p, 8, octaves, seed + 10u);
   return vec4(dilated(low, domes), inverted_worley(p * 8.0, 8, seed + 20u), inverted_worley(p * 16.0, 16, seed + 30u),
               inverted_worley(p * 32.0, 32, seed + 40u));
 }
