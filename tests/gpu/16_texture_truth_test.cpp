@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tests/gpu/16_texture.hpp"
+#include "tests/gpu/16_viewer.hpp"
 
 using namespace welkin;
 using namespace welkin::test;
@@ -193,4 +194,46 @@ TEST_CASE("truth: seeds make other noise of the same kind, and the same seed the
     CHECK(sa.mean == Approx(sb.mean).margin(0.1));
     CHECK(sa.deviation == Approx(sb.deviation).epsilon(0.25));
   }
+}
+
+TEST_CASE("truth: between texels, what a format and its filter lose") {
+  // The picture of half a texture, 36 pixels high, against the trilinear mean of 16-bit texels in double. 8 bits:
+  // texels are off by up to 1/510, and a driver may filter them to 8 bits as well. 16 bits: what is left is the
+  // filter's own weights, which the software driver has in full, and others in 256ths (of steps of up to 0.4 between
+  // texels).
+  TextureRecipe recipe = small_recipe(NoiseKind::base, 32, TexelFormat::bits16);
+  recipe.seed = 0;
+  const std::vector<Four> texels = numbers_of(recipe, made_words(recipe));
+  const auto expected = [&](uint32_t x, uint32_t y) {
+    const double at[3] = {(x + 0.5) / 36 * 16 - 0.5, (y + 0.5) / 36 * 16 - 0.5, 0.25 * 32 - 0.5};
+    double sum = 0;
+    for (int n = 0; n < 8; ++n) {
+      double weight = 1;
+      size_t index = 0, stride = 1;
+      for (size_t axis = 0; axis < 3; ++axis, stride *= 32) {
+        const double low = std::floor(at[axis]), t = at[axis] - low;
+        const int corner = n >> axis & 1;
+        weight *= corner == 1 ? t : 1 - t;
+        index += stride * ((static_cast<size_t>(static_cast<int>(low) + corner + 32)) % 32);
+      }
+      sum += weight * static_cast<double>(texels[index][0]);
+    }
+    return sum;
+  };
+  const auto worst_of = [&](const char* format) {
+    ViewerFixture frame({"noise.show=base", "noise.tiles=0.5", format}, {64, 36});
+    const Image picture = frame.picture();
+    double worst = 0;
+    for (uint32_t y = 0; y < 36; ++y)
+      for (uint32_t x = 0; x < 64; ++x)
+        worst = std::max(worst, std::abs(static_cast<double>(picture.pixels[y * 64 + x].r) - expected(x, y)));
+    return worst;
+  };
+  const double eight = worst_of("noise.format=8"), sixteen = worst_of("noise.format=16"),
+               half = worst_of("noise.format=half");
+  CAPTURE(eight, sixteen, half);
+  CHECK(eight > 1.0 / 510 - 2e-4);
+  CHECK(eight < 4.0 / 510);  // half a step of the texel, and half of one for each axis's mean
+  CHECK(sixteen < (device().candidate().software ? 2e-5 : 2e-3));
+  CHECK(half < (device().candidate().software ? 3e-4 : 2e-3));
 }
