@@ -129,7 +129,7 @@ std::vector<Knob> noise_knobs() {
        .maximum = 6,
        .initial = 3,
        .integer = true,
-       .ladder = {1, 2, 3, 4, 5, 6},
+       .ladder = {1, 3, 5},
        .rebuilds = true},
       {.name = "noise.format",
        .meaning = "bits of a number in the textures: 8, 16, or a half float",
