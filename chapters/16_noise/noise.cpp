@@ -149,7 +149,7 @@ std::vector<Knob> noise_knobs() {
        .initial = 0,
        .choices = {"off", "on"},
        .rebuilds = true}};
-  knobs.front().ladder = {0, 1, 2, 3};
+  knobs.front().ladder = {0, 1, 2};
   return knobs;
 }
 // [/knobs]

@@ -9,7 +9,7 @@
 const int kBase = 0, kDetail = 1, kCurl = 2, kWeather = 3, kAlligator = 4;
 
 // [fbm]
-// Octaves, each twice as fine and `gain` times as strong as the one before, with a seed of its own: lattices never line up.
+// Octaves, each twice as fine and `gain` times as strong as the one before, with a seed of its own.
 // full: 1 over the sum of the strengths, so that the sum's range is that of one octave.
 struct Octaves {
   int count;
@@ -18,11 +18,17 @@ struct Octaves {
 };
 uint seed_of(uint seed, int octave) { return seed + uint(octave) * 0x9E3779B9u; }
 
+// Every corner of an octave's lattice is one of the next, and Perlin noise is 0 there: the sum of all would be, and the
+// corners would show as a grid. So each lattice is moved by a random part of a cell, a multiple of 1/256: exact in float.
+vec3 shift_of(uint seed) { return vec3(hashed(ivec3(-1), seed).xyz >> 24u) * (1.0 / 256.0); }
+
 vec4 perlin_fbm(vec3 p, int cells, Octaves octaves, uint seed) {
   precise vec4 sum = vec4(0.0);
   float strength = 1.0;
   for (int i = 0; i < octaves.count; i++, cells *= 2, strength *= octaves.gain) {
-    vec4 octave = perlin(p * float(cells), cells, seed_of(seed, i));
+    uint own_seed = seed_of(seed, i);
+    precise vec3 place = p * float(cells) + shift_of(own_seed);
+    vec4 octave = perlin(place, cells, own_seed);
     precise vec4 slopes = octave * vec4(1.0, vec3(float(cells)));  // per side of the texture
     sum = sum + strength * slopes;
   }
@@ -44,7 +50,9 @@ vec3 perlin_fbm(vec2 p, int cells, Octaves octaves, uint seed) {
   precise vec3 sum = vec3(0.0);
   float strength = 1.0;
   for (int i = 0; i < octaves.count; i++, cells *= 2, strength *= octaves.gain) {
-    vec3 octave = perlin(p * float(cells), cells, seed_of(seed, i));
+    uint own_seed = seed_of(seed, i);
+    precise vec2 place = p * float(cells) + shift_of(own_seed).xy;
+    vec3 octave = perlin(place, cells, own_seed);
     precise vec3 slopes = octave * vec3(1.0, vec2(float(cells)));
     sum = sum + strength * slopes;
   }

@@ -36,7 +36,7 @@ vec3 sky(vec3 direction) {
 float distance_to_body(vec3 direction, float pixel) {
   float t = (kTop - kEye.z) / direction.z;
   float step_length = 0.003;
-  for (int i = 0; i < 700 && t < 16.0; i++) {
+  for (int i = 0; i < 320 && t < 10.0; i++) {
     if (inside(kEye + direction * t, log2(max(128.0 * pixel * t, 1.0))) > 0.0) {
       float outside_at = t - step_length;
       for (int j = 0; j < 8; j++) {
@@ -46,7 +46,7 @@ float distance_to_body(vec3 direction, float pixel) {
       }
       return t;
     }
-    step_length = 0.003 + 0.004 * t;
+    step_length = 0.003 + 0.009 * t;
     t += step_length;
   }
   return -1.0;
@@ -73,7 +73,7 @@ void main() {
   if (direction.z < -1.0e-3) {
     const float t = distance_to_body(direction, pixel);
     const vec3 haze = sky(vec3(direction.xy, 0.0));
-    if (t > 0.0) color = mix(haze, lit(kEye + direction * t, t, log2(max(128.0 * pixel * t, 1.0))), exp(-0.16 * t));
+    if (t > 0.0) color = mix(haze, lit(kEye + direction * t, t, log2(max(128.0 * pixel * t, 1.0))), exp(-0.22 * t));
     else color = haze;
   }
   show(at, pow(clamp(color, 0.0, 1.0), vec3(1.0 / 2.2)));

@@ -117,6 +117,25 @@ TEST_CASE("hard: the low bits of a hash are alike in neighbouring cells") {
   CHECK(correlation(0) > 0.05);
 }
 
+TEST_CASE("hard: octaves do not vanish together") {
+  // Every corner of a lattice is one of all finer ones: unshifted, the sum of octaves is 0 at each, a grid of grey
+  // dots.
+  const noise::Octaves octaves{4, 0.5f};
+  double robust = 0, naive = 0, anywhere = 0;
+  int count = 0;
+  for (uint32_t seed = 0; seed < 50; ++seed)
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j, ++count) {
+        const double x = i / 4.0, y = j / 4.0;
+        const auto square = [&](double at, bool shifted) {
+          return std::pow(noise::perlin_fbm(at, y, 0.0, true, 4, octaves, 100 * seed, shifted)[0], 2);
+        };
+        robust += square(x, true), naive += square(x, false), anywhere += square(x + 0.11, true);
+      }
+  CHECK(naive == 0.0);
+  CHECK(robust / anywhere == Approx(1.0).margin(0.25));  // 800 numbers each, of 50 patterns
+}
+
 TEST_CASE("hard: places left of the origin, on corners and on the last bit before them") {
   const float inf_step = std::numeric_limits<float>::denorm_min();
   std::vector<NoiseItem> items;

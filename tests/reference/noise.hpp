@@ -142,11 +142,14 @@ auto fbm(const Octaves& octaves, int cells, uint32_t seed, const One& one) {
   return sum;
 }
 
+// Not shifted: corners of all octaves' lattices coincide.
 template <typename T>
-Sloped<T> perlin_fbm(T x, T y, T z, bool flat, int cells, const Octaves& octaves, uint32_t seed) {
+Sloped<T> perlin_fbm(T x, T y, T z, bool flat, int cells, const Octaves& octaves, uint32_t seed, bool shifted = true) {
   return fbm<T>(octaves, cells, seed, [&](int n, uint32_t s) {
     const T f = static_cast<T>(n);
-    Sloped<T> v = flat ? perlin2(x * f, y * f, n, s) : perlin3(x * f, y * f, z * f, n, s);
+    const Hash h = hashed(-1, -1, -1, s);
+    const auto moved = [&](T at, size_t axis) { return at * f + T(shifted ? h[axis] >> 24 : 0) / T(256); };
+    Sloped<T> v = flat ? perlin2(moved(x, 0), moved(y, 1), n, s) : perlin3(moved(x, 0), moved(y, 1), moved(z, 2), n, s);
     for (size_t i = 1; i < 4; ++i) v[i] = v[i] * f;
     return v;
   });
