@@ -1,6 +1,5 @@
-// What the frame graph makes: resources, pipelines, descriptor sets; and what it says of itself. See graph.hpp.
+// What the frame graph makes: resources, pipelines, descriptor sets. See graph.hpp.
 #include <algorithm>
-#include <set>
 
 #include "common/graph/graph.hpp"
 
@@ -39,6 +38,12 @@ Graph::Graph(const gpu::Device& device, const std::string& inject)
 
 Resource Graph::hold(Held held) {
   held.owner = owner_;
+  start_states(held);
+  held_.emplace(next_, std::move(held));
+  return next_++;
+}
+
+void Graph::start_states(Held& held) {
   const uint32_t mips = held.is_buffer ? 1 : std::max(held.info.mips, 1u);
   // What was filled before is visible to everybody.
   constexpr gpu::Use everybody{~VkPipelineStageFlags2{0}, ~VkAccessFlags2{0}, VK_IMAGE_LAYOUT_GENERAL};
@@ -48,8 +53,6 @@ Resource Graph::hold(Held held) {
              .readers = 1,
              .layout = held.is_buffer ? VK_IMAGE_LAYOUT_UNDEFINED : VK_IMAGE_LAYOUT_GENERAL};
   for (std::vector<State>& states : held.states) states.assign(mips, first);
-  held_.emplace(next_, std::move(held));
-  return next_++;
 }
 
 Resource Graph::add_image(std::string name, ImageInfo info) { return hold({.name = std::move(name), .info = info}); }
@@ -77,7 +80,9 @@ Resource Graph::add_filled(std::string name, gpu::Buffer&& buffer) {
 }
 
 Resource Graph::import(std::string name, const gpu::Image* image, gpu::Use between_frames) {
-  return hold({.name = std::move(name), .kind = Kind::imported, .image = image, .between_frames = between_frames});
+  Held held{.name = std::move(name), .kind = Kind::imported, .image = image, .between_frames = between_frames};
+  if (image != nullptr) held.info.mips = image->mips;
+  return hold(std::move(held));
 }
 
 Resource Graph::import(std::string name, const gpu::Buffer* buffer) {
@@ -90,6 +95,10 @@ void Graph::replace(Resource resource, const gpu::Image* image, gpu::Use between
   held.image = image, held.between_frames = between_frames, held.own_images[0] = {};
   held.states[0].assign(held.states[0].size(), {});
   held.outdated = true, held.version = ++versions_;
+}
+
+Resource Graph::add_filled(std::string name, ImageInfo info, std::function<gpu::Image()> fill) {
+  return hold({.name = std::move(name), .kind = Kind::filled, .info = info, .fill = std::move(fill)});
 }
 
 const gpu::Image* Graph::image_of(const Held& held, bool second) {
@@ -179,7 +188,7 @@ void Graph::make_all(VkExtent2D picture_size) {
   for (auto& [resource, held] : held_) {
     if (std::find(used.begin(), used.end(), &held) != used.end())
       allocate(held, picture_size);
-    else if (held.kind != Kind::filled && held.kind != Kind::imported)
+    else if ((held.kind != Kind::filled && held.kind != Kind::imported) || held.fill)
       held.own_images = {}, held.own_buffer = {}, held.outdated = true;
   }
   for (const Counted* counted : order_)
@@ -193,6 +202,11 @@ void Graph::make_all(VkExtent2D picture_size) {
 
 // Makes what is not there yet, or has another size now.
 void Graph::allocate(Held& held, VkExtent2D picture_size) {
+  if (held.fill && held.own_images[0].handle == VK_NULL_HANDLE) {
+    held.own_images[0] = held.fill();
+    start_states(held);
+    held.version = ++versions_;
+  }
   if (held.kind == Kind::filled || held.kind == Kind::imported) return;
   if (held.is_buffer) {
     if (held.own_buffer.handle != VK_NULL_HANDLE) return;
@@ -284,110 +298,10 @@ void Graph::check_fit(const Step& step, const gpu::ShaderBinding& wanted, const 
 }
 
 VkSampler Graph::sampler(const Sampling& sampling) {
-  gpu::Sampler& kept =
-      samplers_[{static_cast<int>(sampling.u), static_cast<int>(sampling.v), static_cast<int>(sampling.filter)}];
-  if (kept == VK_NULL_HANDLE) kept = gpu::create_sampler(*device_, sampling.u, sampling.v, sampling.filter);
+  gpu::Sampler& kept = samplers_[{static_cast<int>(sampling.u), static_cast<int>(sampling.v),
+                                  static_cast<int>(sampling.filter), static_cast<int>(sampling.w)}];
+  if (kept == VK_NULL_HANDLE) kept = gpu::create_sampler(*device_, sampling.u, sampling.v, sampling.filter, sampling.w);
   return kept;
-}
-
-std::string Graph::explain() const {
-  std::string text = "frame graph:\n";
-  for (const Counted* counted : order_)
-    text += fmt::format("  {:<20} ran in {} of {} frames{}\n", counted->pass.name, counted->runs, frames_,
-                        counted->runs < frames_ ? "; in the others nothing it depends on had changed" : "");
-  for (const auto& counted : passes_)
-    if (!counted->used) text += fmt::format("  {:<20} left out: nobody needs what it writes\n", counted->pass.name);
-  for (const Barrier& barrier : barriers())
-    text += fmt::format("  before {}: {} from {} to {}\n", barrier.pass, barrier.resource, describe(barrier.before),
-                        describe(barrier.after));
-  return text;
-}
-
-std::vector<std::string> Graph::order() const {
-  std::vector<std::string> names;
-  for (const Counted* counted : order_) names.push_back(counted->pass.name);
-  return names;
-}
-
-std::vector<std::string> Graph::order(uint32_t owner) const {
-  std::vector<std::string> names;
-  for (const Counted* counted : order_)
-    if (counted->owner == owner) names.push_back(counted->pass.name);
-  return names;
-}
-
-std::vector<std::string> Graph::resources(uint32_t owner) const {
-  std::vector<std::string> names;
-  for (const auto& [resource, held] : held_)
-    if (held.owner == owner && bytes_of(held) > 0) names.push_back(held.name);
-  return names;
-}
-
-uint64_t Graph::bytes_of(const Held& held) {
-  return held.own_images[0].account.bytes() + held.own_images[1].account.bytes() + held.own_buffer.account.bytes();
-}
-
-uint64_t Graph::bytes() const {
-  uint64_t sum = 0;
-  for (const auto& [resource, held] : held_) sum += bytes_of(held);
-  return sum;
-}
-
-uint64_t Graph::runs(const std::string& pass) const {
-  for (const auto& counted : passes_)
-    if (counted->pass.name == pass) return counted->runs;
-  return 0;
-}
-
-size_t Graph::pipelines() const {
-  std::set<const gpu::NamedPipeline*> bound;
-  for (const Counted* counted : order_)
-    for (const Made& made : counted->steps)
-      if (made.pipeline) bound.insert(made.pipeline.get());
-  return bound.size();
-}
-
-bool Graph::serves(uint32_t owner) const {
-  const auto touches_its = [owner](const Touch& touch) { return touch.held->owner == owner; };
-  return std::any_of(order_.begin(), order_.end(), [&](const Counted* counted) {
-    return counted->owner == owner || std::any_of(counted->steps.begin(), counted->steps.end(), [&](const Made& made) {
-             return std::any_of(made.touches.begin(), made.touches.end(), touches_its);
-           });
-  });
-}
-
-std::string describe(const gpu::Use& use) {
-  std::string text;
-  const auto bits = [&](auto value, std::initializer_list<std::pair<uint64_t, const char*>> names) {
-    for (const auto& [bit, name] : names)
-      if ((value & bit) != 0) text += (text.empty() ? "" : ", ") + std::string(name);
-  };
-  bits(use.stage, {{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, "compute shader"},
-                   {VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT, "vertex shader"},
-                   {VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, "fragment shader"},
-                   {VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT, "early depth test"},
-                   {VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT, "late depth test"},
-                   {VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, "attachment output"},
-                   {VK_PIPELINE_STAGE_2_COPY_BIT, "copy"},
-                   {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, "transfer"}});
-  if (text.empty()) text = "nothing";
-  bits(use.access, {{VK_ACCESS_2_SHADER_STORAGE_READ_BIT, "storage read"},
-                    {VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, "storage write"},
-                    {VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, "sampled read"},
-                    {VK_ACCESS_2_UNIFORM_READ_BIT, "uniform read"},
-                    {VK_ACCESS_2_TRANSFER_WRITE_BIT, "write"},
-                    {VK_ACCESS_2_TRANSFER_READ_BIT, "read"},
-                    {VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, "colour write"},
-                    {VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT, "depth write"},
-                    {VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT, "depth read"}});
-  switch (use.layout) {
-    case VK_IMAGE_LAYOUT_UNDEFINED: break;  // a buffer, or content that is not needed
-    case VK_IMAGE_LAYOUT_GENERAL: text += ", GENERAL"; break;
-    case VK_IMAGE_LAYOUT_ATTACHMENT_OPTIMAL: text += ", ATTACHMENT_OPTIMAL"; break;
-    case VK_IMAGE_LAYOUT_READ_ONLY_OPTIMAL: text += ", READ_ONLY_OPTIMAL"; break;
-    default: text += fmt::format(", layout {}", static_cast<int>(use.layout));
-  }
-  return text;
 }
 
 }  // namespace welkin::graph
