@@ -39,7 +39,7 @@ gpu::Image kept_or_made(const gpu::Device& device, const TextureRecipe& recipe, 
     const CacheRead read = read_cached(file, key, words.as<char>());
     if (read.found) {
       gpu::Image image = image_of(device, recipe, std::move(words));
-      story = fmt::format("read from {} in {:.1f} ms", file.string(), elapsed_ms());
+      story = fmt::format("read in {:.1f} ms from {}", elapsed_ms(), file.string());
       return image;
     }
     fmt::print(stderr, "{}: {}; made anew\n", file.string(), read.fault);

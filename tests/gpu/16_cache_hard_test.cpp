@@ -53,7 +53,7 @@ TEST_CASE("hard: a texture from the cache has the words that were made") {
   ViewerFixture warm;
   CHECK(warm.picture().pixels == made.pixels);
   for (const char* texture : {"noise base", "noise detail", "noise curl", "weather", "alligator"})
-    CHECK(warm.says(std::string(texture) + ": read from "));
+    CHECK(warm.says(std::string(texture) + ": read in "));
   const Variable off("WELKIN_CACHE", "off");
   ViewerFixture without;
   CHECK(without.picture().pixels == made.pixels);
