@@ -79,7 +79,7 @@ TEST_CASE("hard: a file of the cache that is cut short, changed, older or not on
     ViewerFixture again({"noise.show=curl"});
     CHECK(again.picture().pixels == right.pixels);
     CHECK(again.says("noise curl: made in "));
-    CHECK(read_file(file, 1 << 20) == good);  // mended
+    CHECK((read_file(file, 1 << 20) == good));  // mended
     CHECK(only_file(directory.path) == file);
   }
   fs::remove(file);

@@ -102,7 +102,8 @@ TEST_CASE("hard: no point within a cell's width: the domes have ended, at 0 and 
 
 TEST_CASE("hard: the low bits of a hash are alike in neighbouring cells") {
   // With gradients drawn from the lowest bits the corners of a cell are not independent: the variance of 2-D Perlin
-  // noise was 1.5 % off its closed form, 25 standard errors. From the highest bits it is that of independent ones.
+  // noise was 1.5 % off its closed form, 25 standard errors of four million numbers. From the highest bits it is that
+  // of independent ones.
   const auto correlation = [](int shift) {
     double sum = 0;
     const int count = 400000;
