@@ -18,7 +18,7 @@ float reciprocal(float x) {
   uint digits = ((bits & 0x7FFFFFu) | 0x800000u) >> 8u;        // m 2^15
   uint start = 0x80000000u / digits;                           // 2^16 / m, to one part in 2^14
   precise float y = float(start) * uintBitsToFloat(uint(238 - exponent) << 23u);
-  for (int i = 0; i < 2; i++) y = y * (2.0 - x * y);
+  y = y * (2.0 - x * y);  // to one part in 2^28
   return y;
 }
 // [/reciprocal]

@@ -70,9 +70,9 @@ float worley_fbm(vec2 p, int cells, Octaves octaves, uint seed) {
 }
 
 // [perlin_worley]
-// Perlin's range 0 ... 1 pushed up to begin at the Worley noise: remap(perlin^2, 0, 1, worley, 1). The result is at least either
-// of them ("dilated"): Perlin's connected banks, puffed up with Worley's domes. Squared, because most of Perlin's numbers lie
-// near the middle, where they would drown the domes.
+// Perlin's range 0 ... 1 pushed up to begin at the Worley noise: remap(perlin^2, 0, 1, worley, 1). The result is below neither
+// ("dilated"): Perlin's connected banks, puffed up with Worley's domes. Squared, because most of Perlin's numbers lie near the
+// middle, where they would drown the domes.
 float dilated(float perlin, float worley) {
   precise float low = 0.5 + 0.5 * perlin;  // from -1 ... 1
   precise float value = worley + low * low * (1.0 - worley);

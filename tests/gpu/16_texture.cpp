@@ -14,9 +14,8 @@ float twin_reciprocal(float x) {
   int exponent = 0;
   const float m = std::frexp(x, &exponent);  // 1/2 ... 1
   const uint32_t start = 0x80000000u / static_cast<uint32_t>(std::floor(m * 65536.0f));
-  float y = std::ldexp(static_cast<float>(start), -16 - (exponent - 1));
-  for (int i = 0; i < 2; ++i) y = y * (2.0f - x * y);
-  return y;
+  const float y = std::ldexp(static_cast<float>(start), -16 - (exponent - 1));
+  return y * (2.0f - x * y);
 }
 
 uint32_t twin_half(double v) {
