@@ -94,8 +94,7 @@ gpu::Buffer staging_for(const gpu::Device& device, const TextureRecipe& recipe) 
 gpu::Image image_of(const gpu::Device& device, const TextureRecipe& recipe, gpu::Buffer&& words) {
   const graph::ImageInfo info = recipe.image_info();
   gpu::Image image = gpu::create_image(device, recipe.name, info.size, info.format, info.usage, info.depth, info.mips);
-  gpu::Pipelines pipelines(device);
-  graph::Graph graph(device, pipelines);
+  graph::Graph graph(device);
   const graph::Resource from = graph.add_filled("words", std::move(words)), to = graph.import(recipe.name, &image);
   graph::Pass pass{.name = "upload"};
   pass.steps.push_back({.accesses = {{from, gpu::kTransferRead}, {to, gpu::kTransferWrite}},
@@ -118,7 +117,7 @@ gpu::Image image_of(const gpu::Device& device, const TextureRecipe& recipe, gpu:
 // [/upload]
 
 TextureMaker::TextureMaker(const gpu::Device& device, const TextureRecipe& recipe, bool keep)
-    : device_(device), recipe_(recipe), pipelines_(device), graph_(device, pipelines_) {
+    : device_(device), recipe_(recipe), graph_(device) {
   const graph::ImageInfo info = recipe_.image_info();
   image_ = gpu::create_image(device, recipe_.name, info.size, info.format, info.usage, info.depth, info.mips);
   if (keep)

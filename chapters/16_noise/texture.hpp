@@ -70,7 +70,6 @@ class TextureMaker {
 
   const gpu::Device& device_;
   const TextureRecipe recipe_;
-  gpu::Pipelines pipelines_;
   gpu::Image image_;
   gpu::Buffer words_;
   graph::Graph graph_;

@@ -15,6 +15,7 @@
 #include "common/graph/composition.hpp"
 #include "common/image/atomic_file.hpp"
 #include "common/image/csv.hpp"
+#include "tree.hpp"
 
 namespace welkin::test {
 

@@ -9,6 +9,7 @@
 #include "common/app/camera.hpp"
 #include "common/image/csv.hpp"
 #include "tests/gpu/17_clouds.hpp"
+#include "tree.hpp"
 
 using namespace welkin;
 using namespace welkin::test;
