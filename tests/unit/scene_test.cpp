@@ -14,13 +14,14 @@
 #include "common/image/png.hpp"
 #include "common/scene/scene_knobs.hpp"
 #include "tests/hard/scene_fields.hpp"
+#include "tree.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
 using welkin::Scene;
 
-const fs::path kRoot = fs::path(__FILE__).parent_path().parent_path().parent_path();
+const fs::path kRoot = WELKIN_SOURCE_DIRECTORY;
 const fs::path kScenes = kRoot / "chapters/scenes";
 const char* const kNames[] = {"earth", "alien",    "today", "noon",     "sunset",
                               "fair",  "overcast", "storm", "twilight", "orbit"};

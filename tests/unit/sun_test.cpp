@@ -12,13 +12,14 @@
 #include <vector>
 
 #include "common/error.hpp"
+#include "tree.hpp"
 
 namespace {
 
 using welkin::sun_angles;
 using welkin::SunAngles;
 
-const std::filesystem::path kRoot = std::filesystem::path(__FILE__).parent_path().parent_path().parent_path();
+const std::filesystem::path kRoot = WELKIN_SOURCE_DIRECTORY;
 constexpr double kPi = 3.14159265358979323846;
 
 std::string refused(const std::string& utc, double latitude_deg = 0, double longitude_deg = 0) {
