@@ -77,7 +77,8 @@ TEST_CASE("only what the scene calls for: no cloud, a layer, a grid, noise") {
   const GridFile file("deck");
   Shown grid(noon_with({{.kind = "grid", .up_km = 3.0, .file = file.path().string(), .size_km = file.size_km}}));
   grid.draw(view);
-  CHECK(grid.program->bytes() < bytes + 8192 + 64 * 32 * 16 + 98304 + 65 * 65 * 17 * 4);
+  // A device may tile a volume and take up to three times its texels for it: still a tenth of the noise textures.
+  CHECK(grid.program->bytes() < bytes + 8192 + 64 * 32 * 16 + 98304 + 3 * 65 * 65 * 17 * 4);
   CHECK(grid.program->explain().find("no noise, weather or curl texture") != std::string::npos);
 
   Scene windy = noon_with({});

@@ -93,7 +93,8 @@ TEST_CASE("density is within its bounds, the shape alone bounds the others, and 
     for (int form = 0; form < 3; ++form) REQUIRE((answer[form] >= 0.0 && answer[form] <= 1.0));
     REQUIRE(answer[1] <= answer[0] + 1e-6);
     REQUIRE(answer[2] <= answer[0] + 1e-6);
-    REQUIRE(answer[3] == Approx(40.0 * answer[2]));
+    // Two calls may round a place differently, and a sampler's weights come in steps of 1/256 of a texel.
+    REQUIRE(answer[3] == Approx(40.0 * answer[2]).epsilon(2e-3).margin(40.0 * 1e-4));
   }
   const Cover shape = cover_of(answers, 0), cheap = cover_of(answers, 1), full = cover_of(answers, 2);
   CAPTURE(shape.share, shape.mean, cheap.mean, full.mean, full.largest);
@@ -176,8 +177,10 @@ TEST_CASE("hard: far from the origin the field does not depend on how a place is
   CHECK(cover_of(one).share > 0.1);
   // What is left are the steps of the sampler's weights, 1/256 of a texel, on both sides; places themselves are known
   // to 0.1 m (hard: a position is wrapped around exactly).
-  CHECK(largest(one, two) < 2e-3);
-  CHECK(largest(one, rough) < 3e-3);
+  // A sampler may round the coordinate itself to 1/256 of a texel: from one texel to the next the base changes by up to
+  // 0.35, the remap of a cover of one half doubles it, and both places are rounded: 2 x 0.35 x 2 / 256.
+  CHECK(largest(one, two) < 5.5e-3 + 2e-3);
+  CHECK(largest(one, rough) < 5.5e-3 + 3e-3);
   std::filesystem::remove(file);
 }
 
