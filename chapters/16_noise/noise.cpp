@@ -1,8 +1,10 @@
 // The noise textures as effects. See noise.hpp and docs/chapters/16_noise.md.
 #include "chapters/16_noise/noise.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <map>
 
 #include "chapters/16_noise/texture.hpp"
 #include "chapters/16_noise/texture_cache.hpp"
@@ -14,7 +16,8 @@ namespace {
 // Where each texture of an effect came from, for --explain; by name.
 using Stories = std::map<std::string, std::string>;
 
-// Everything a texture's words follow from: the shaders that compute them, and the recipe.
+// What a texture's words follow from: the shaders that compute them, and the recipe. The steps between are those of
+// texture.cpp: whoever changes them raises the version in texture_cache.cpp.
 uint64_t key_of(const TextureRecipe& recipe) {
   uint64_t key = checksum(recipe.text());
   for (const char* shader : {"fill", "extent_parts", "extent_whole", "average", "pack"}) {
@@ -64,7 +67,7 @@ TextureRecipe recipe_of(const Settings& settings, const char* name, NoiseKind ki
           .side = static_cast<uint32_t>(std::stoi(settings.choice(size))),
           .volume = volume,
           .octaves = settings.integer("noise.octaves"),
-          .seed = static_cast<uint32_t>(settings.integer("noise.seed") + 1000 * static_cast<int>(kind)),
+          .seed = static_cast<uint32_t>(10000 * settings.integer("noise.seed") + 1000 * static_cast<int>(kind)),
           .format = format_of(settings)};
 }
 
@@ -82,6 +85,7 @@ graph::Resource add_texture(app::Builder& builder, const TextureRecipe& recipe,
   const auto maker = std::make_shared<TextureMaker>(device, recipe, false);
   const graph::Resource image = builder.graph.import(recipe.name, &maker->image());
   graph::Pass pass{.name = recipe.name, .changed = [](const app::Frame&) { return true; }, .times_itself = true};
+  // The maker's own graph leaves the image in GENERAL after its copies: that is what readers of this pass wait for.
   pass.steps.push_back(
       {.accesses = {{image, {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_IMAGE_LAYOUT_GENERAL}}},
        .record = [maker](const graph::Recorder& r) { maker->record(r.frame); }});
@@ -108,7 +112,7 @@ Knob size_knob(const char* name, const char* meaning, std::vector<std::string> c
           .rebuilds = true};
 }
 
-// What of the settings every texture was made for, in the key of effects whose knobs these are not.
+// Effects that do not own the knobs noise.* are rebuilt when these change.
 std::string shared_key(const Settings& settings) {
   return fmt::format("{} {} {} {}", settings.text("noise.octaves"), settings.text("noise.format"),
                      settings.text("noise.seed"), settings.text("noise.remake"));

@@ -2,7 +2,7 @@
 //
 // Every texture tiles exactly, holds the same bits whichever device made it, has mips down to one texel, and is read
 // with a sampler that repeats: graph::Sampling with u, v and w = gpu::Border::repeat. A texture that no needed pass
-// reads is neither made nor allocated. What is made once is kept in the user's cache directory (noise_cache.hpp).
+// reads is neither made nor allocated. What is made once is kept in the user's cache directory (texture_cache.hpp).
 #pragma once
 
 #include <vector>
@@ -11,11 +11,12 @@
 
 namespace welkin {
 
-// On the board after noise_textures(). Numbers are 0 ... 1, and both ends occur; those of `curl` are -1 ... 1.
+// On the board after noise_textures(), with sizes and octaves by default. Numbers are 0 ... 1, and both ends occur;
+// those of `curl` are -1 ... 1.
 //   base    3-D, 128^3: r Perlin-Worley; g, b, a inverted Worley of 8, 16, 32 cells a side
 //   detail  3-D, 32^3: r, g, b inverted Worley of 2, 4, 8 cells a side; a their fBm
-//   curl    2-D, 128^2: x, y, z a divergence-free displacement that does not change along z, in units of the longest
-//           component there is; w its stream function
+//   curl    2-D, 128^2: x, y, z a divergence-free displacement that does not change along z, in units of the largest
+//           component in the map; w its stream function
 struct NoiseTextures {
   graph::Resource base, detail, curl;
 };

@@ -80,8 +80,8 @@ void check_filtered(const gpu::Device& device, const TextureRecipe& recipe) {
   VkFormatProperties properties;
   vkGetPhysicalDeviceFormatProperties(device.physical(), recipe.vk_format(), &properties);
   if ((properties.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT) == 0)
-    fail("{}: {} cannot filter textures of this format; noise.format = 8 and half always work", recipe.name,
-         device.candidate().name);
+    fail("noise.format = 16: {} cannot filter '{}' between texels; accepted here are 8 and half",
+         device.candidate().name, recipe.name);
 }
 
 // [upload]
@@ -137,7 +137,7 @@ TextureMaker::Raw TextureMaker::add_raw() {
                 graph_.add_image(recipe_.name + " raw mips",
                                  {.size = {side / 2, side / 2}, .depth = volume ? side / 2 : 1, .mips = mips - 1})};
   graph::Pass fill{.name = recipe_.name + " fill", .changed = [](const app::Frame&) { return true; }};
-  // The sum of 1, g, g^2, …: of numbers exact in float, so that only the division rounds.
+  // 1 over the sum of 1, g, g^2, …: of numbers exact in float, so that only the division rounds.
   const float gain = recipe_.is_signed() ? 0.25f : 0.5f;
   const float full = (1.0f - gain) / (1.0f - std::pow(gain, static_cast<float>(recipe_.octaves)));
   fill.steps.push_back({.shader = "16_noise/fill.comp",

@@ -20,7 +20,7 @@ enum class TexelFormat { bits8, bits16, half };
 struct TextureRecipe {
   std::string name;  // "noise base"
   NoiseKind kind = NoiseKind::base;
-  uint32_t side = 128;  // texels, a power of two
+  uint32_t side = 128;  // texels, a power of two, 2 or more
   bool volume = true;   // side^3, or side^2
   int octaves = 3;
   uint32_t seed = 0;
@@ -56,7 +56,7 @@ class TextureMaker {
   void record(const app::Frame& frame) { graph_.execute(frame); }  // all passes, however often they have run
   void run();                                                      // outside of frames, and waits
   const gpu::Image& image() const { return image_; }
-  gpu::Image take_image() { return std::move(image_); }  // the end of this maker
+  gpu::Image take_image() { return std::move(image_); }  // the maker is of no use afterwards
   std::string_view words() const;                        // after run()
   double milliseconds() const { return milliseconds_; }  // of run(), by the device's clock
 

@@ -2,6 +2,7 @@
 // was made from. A file that is not exactly what it should be is as good as none. CPU only.
 //
 // The directory: $WELKIN_CACHE if set ("off": nothing is kept), else $XDG_CACHE_HOME/welkin, else $HOME/.cache/welkin.
+// Old files are never removed: one for every choice of knobs that was tried, 0.1 to 150 MB each.
 // A file: eight letters of magic, a version, the key, the number of bytes, a checksum of them, and the bytes.
 #pragma once
 
@@ -24,14 +25,15 @@ std::filesystem::path cache_directory();
 std::filesystem::path cache_file(const std::string& name, uint64_t key);
 
 // Fills `into` from the file if that holds as many bytes, made from `key`. If not, what `into` holds then is undefined.
-// Straight into its place, which may be a device's: touching fresh memory is most of what reading costs. Never throws.
+// Straight into its place, which may be a device's: touching fresh memory is most of what reading costs. Throws no
+// Error.
 struct CacheRead {
   bool found = false;  // and good
   std::string fault;   // of a file that is there
 };
 CacheRead read_cached(const std::filesystem::path& file, uint64_t key, std::span<char> into);
 
-// Keeps them, making the directory if need be. Returns why they are not kept, or nothing. Never throws.
+// Keeps them, making the directory if need be. Returns why they are not kept, or nothing. Throws no Error.
 std::string write_cached(const std::filesystem::path& file, uint64_t key, std::string_view bytes);
 
 }  // namespace welkin

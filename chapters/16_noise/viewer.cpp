@@ -35,8 +35,8 @@ struct Place {
 struct Shown {
   Texture texture;
   int channel;
-  float tiles, slice;
-  int mip;  // below 0: the one whose texels are about as large as pixels
+  float tiles, slice;  // slice: the level where `deck`
+  int mip;             // below 0: the one whose texels are about as large as pixels
   Place place;
   bool deck = false;  // as a body, where its numbers exceed `slice`
 };

@@ -1,5 +1,5 @@
-// One mip from the next finer one: the mean of eight texels (of four, where there is one slice), so that the mean of a mip
-// is that of the texture. Averaged as floats, before anything is rounded to the texture's format.
+// One mip from the next finer one: the mean of eight texels (of four, where there is one slice), so that the mean of a
+// mip is that of the texture. Averaged as floats, before anything is rounded to the texture's format.
 #version 460
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0, rgba32f) uniform readonly image3D finer;

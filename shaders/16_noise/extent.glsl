@@ -5,13 +5,14 @@
 const int kParts = 256;  // of a texture, each reduced by one workgroup in the first pass
 
 struct Extent {
-  vec4 zero;   // becomes 0
-  vec4 scale;  // times what is above it
+  vec4 zero;   // normalised = (value - zero) * scale
+  vec4 scale;
 };
 
 // [reciprocal]
-// 1 / x with the same bits everywhere: Vulkan lets a division err by 2.5 units in the last place, whole numbers and products
-// leave no choice. Newton's step y (2 - x y) doubles the right digits of a start from whole numbers. x: 2^-60 ... 2^60.
+// 1 / x with the same bits everywhere: Vulkan lets a division err by 2.5 units in the last place, whole numbers and
+// products leave no choice. Newton's step y (2 - x y) doubles the right digits of a start from whole numbers. x: 2^-60
+// ... 2^60.
 float reciprocal(float x) {
   uint bits = floatBitsToUint(x);
   int exponent = int(bits >> 23u);                             // x = m 2^(exponent - 127), m 1 ... 2

@@ -1,4 +1,5 @@
-// How often a channel of a map has which of 256 numbers: every kRowsApart-th row by one workgroup, counted in shared memory first.
+// How often a channel of a map has which of 256 numbers: every kRowsApart-th row by one workgroup, counted in shared
+// memory first.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

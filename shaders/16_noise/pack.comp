@@ -1,5 +1,5 @@
-// The last step: each channel brought to 0 ... 1 (or -1 ... 1) and rounded to the texture's format. The words are copied into
-// the texture as they are, and are what the cache keeps.
+// The last step: each channel brought to 0 ... 1 (or -1 ... 1) and rounded to the texture's format. The words are
+// copied into the texture as they are, and are what the cache keeps.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 8, local_size_y = 8) in;

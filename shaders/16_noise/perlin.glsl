@@ -1,9 +1,9 @@
 // Perlin's gradient noise (Perlin 2002) in 2-D and 3-D, with its derivatives. Unit: one cell of the lattice; it repeats
-// after `period` cells, a power of two. At every corner a gradient is drawn; the corner's plane g . (p - corner) is blended with the others'
-// by the quintic 6 t^5 - 15 t^4 + 10 t^3, whose first two derivatives vanish at the corners.
+// after `period` cells, a power of two. At every corner a gradient is drawn; the corner's plane g . (p - corner) is
+// blended with the others' by the quintic 6 t^5 - 15 t^4 + 10 t^3, whose first two derivatives vanish at the corners.
 //
-// `precise` forbids the compiler to fuse a product and a sum: a fused one rounds once instead of twice, and the last bit
-// would depend on the device.
+// `precise` forbids the compiler to fuse a product and a sum: a fused one rounds once instead of twice, and the last
+// bit would depend on the device.
 #ifndef WELKIN_NOISE_PERLIN_GLSL
 #define WELKIN_NOISE_PERLIN_GLSL
 
@@ -52,7 +52,7 @@ vec4 blended(vec4 a, vec4 b, float t, int axis) {
   return value;
 }
 
-// (noise, d/dx, d/dy, d/dz); the noise is within -1 ... 1, and 0 at every corner.
+// (noise, d/dx, d/dy, d/dz); |noise| <= 1.037 (seldom above 1), and 0 at every corner.
 vec4 perlin(vec3 p, int period, uint seed) {
   vec3 corner = floor(p);
   vec3 d = p - corner;

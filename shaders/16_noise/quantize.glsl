@@ -1,4 +1,5 @@
-// Numbers as a texture's format stores them, rounded to the nearest here and not by the device, which may do it as it likes.
+// Numbers as a texture's format stores them, rounded to the nearest here and not by the device, which may do it as it
+// likes.
 #ifndef WELKIN_NOISE_QUANTIZE_GLSL
 #define WELKIN_NOISE_QUANTIZE_GLSL
 
@@ -12,7 +13,8 @@ uint quantized(float value, int bits, bool is_signed) {
   return uint(value < 0.0 ? -whole : whole) & uint((1 << bits) - 1);
 }
 
-// The nearest half float, of two as near the even one. |value| below 2^-14 in steps of 2^-24, as halves have them there.
+// The nearest half float, of two as near the even one. |value| below 2^-14 in steps of 2^-24, as halves have them
+// there.
 uint half_float(float value) {
   uint bits = floatBitsToUint(value);
   uint sign = (bits >> 16u) & 0x8000u;

@@ -1,5 +1,5 @@
-// What the textures hold: fBm, Perlin-Worley, curl, and the recipe of every channel. p is a place in the texture, 0 ... 1
-// along each side; `cells` is how many cells of the coarsest octave a side has. Everything repeats after 1.
+// What the textures hold: fBm, Perlin-Worley, curl, and the recipe of every channel. p is a place in the texture, 0 ...
+// 1 along each side; `cells` is how many cells of the coarsest octave a side has. Everything repeats after 1.
 #ifndef WELKIN_NOISE_TEXTURES_GLSL
 #define WELKIN_NOISE_TEXTURES_GLSL
 
@@ -19,7 +19,8 @@ struct Octaves {
 uint seed_of(uint seed, int octave) { return seed + uint(octave) * 0x9E3779B9u; }
 
 // Every corner of an octave's lattice is one of the next, and Perlin noise is 0 there: the sum of all would be, and the
-// corners would show as a grid. So each lattice is moved by a random part of a cell, a multiple of 1/256: exact in float.
+// corners would show as a grid. So each lattice is moved by a random part of a cell, a multiple of 1/256: exact in
+// float.
 vec3 shift_of(uint seed) { return vec3(hashed(ivec3(-1), seed).xyz >> 24u) * (1.0 / 256.0); }
 
 vec4 perlin_fbm(vec3 p, int cells, Octaves octaves, uint seed) {
@@ -70,20 +71,21 @@ float worley_fbm(vec2 p, int cells, Octaves octaves, uint seed) {
 }
 
 // [perlin_worley]
-// Perlin's range 0 ... 1 pushed up to begin at the Worley noise: remap(perlin^2, 0, 1, worley, 1). The result is below neither
-// ("dilated"): Perlin's connected banks, puffed up with Worley's domes. Squared, because most of Perlin's numbers lie near the
-// middle, where they would drown the domes.
+// Perlin's range 0 ... 1 pushed up to begin at the Worley noise: remap(perlin^2, 0, 1, worley, 1). The result is below
+// neither ("dilated"): Perlin's connected banks, puffed up with Worley's domes. Squared, because most of Perlin's
+// numbers lie near the middle, where they would drown the domes.
 float dilated(float perlin, float worley) {
-  precise float low = 0.5 + 0.5 * perlin;  // from -1 ... 1
+  precise float low = 0.5 + 0.5 * perlin;  // from about -1 ... 1; channels are normalised afterwards
   precise float value = worley + low * low * (1.0 - worley);
   return value;
 }
 // [/perlin_worley]
 
 // [curl]
-// The curl of a vector potential that does not change along z: (d psi_z/dy, -d psi_z/dx, d psi_y/dx - d psi_x/dy). A curl has
-// no divergence: what it moves is stirred, never squeezed together or thinned. x and y alone are the 2-D curl of psi_z.
-// Derivatives of an octave are twice as strong as those of the one before: with a gain of 1/4 the field's octaves halve.
+// The curl of a vector potential that does not change along z: (d psi_z/dy, -d psi_z/dx, d psi_y/dx - d psi_x/dy). A
+// curl has no divergence: what it moves is stirred, never squeezed together or thinned. x and y alone are the 2-D curl
+// of psi_z. Derivatives of an octave are twice as strong as those of the one before: with a gain of 1/4 the field's
+// octaves halve.
 vec4 curl(vec2 p, int cells, Octaves octaves, uint seed) {
   vec3 x = perlin_fbm(p, cells, octaves, seed);
   vec3 y = perlin_fbm(p, cells, octaves, seed + 1u);
@@ -116,8 +118,8 @@ vec4 detail_texel(vec3 p, uint seed) {
   return vec4(octaves, sum);
 }
 
-// Clouds come in fields: coverage is a Perlin-Worley noise, whose domes are single clouds. Height follows it (a wide cloud
-// grows tall) with a slow change of its own; type and wetness change slowly over the map.
+// Clouds come in fields: coverage is a Perlin-Worley noise, whose domes are single clouds. Height follows it (a wide
+// cloud grows tall) with a slow change of its own; type and wetness change slowly over the map.
 vec4 weather_texel(vec2 p, Octaves octaves, uint seed) {
   float coverage = dilated(perlin_fbm(p, 4, octaves, seed).x, worley_fbm(p, 8, octaves, seed + 10u));
   float slow = perlin_fbm(p, 2, octaves, seed + 20u).x;

@@ -1,4 +1,4 @@
-// How a texture is shown: a rectangle of the picture, a channel or three, and a histogram over it.
+// How a texture is shown: a rectangle of the picture, and a channel or three. (The histogram has a strip of its own.)
 #ifndef WELKIN_NOISE_VIEW_GLSL
 #define WELKIN_NOISE_VIEW_GLSL
 
@@ -7,10 +7,10 @@ layout(push_constant) uniform Push {
   ivec4 rectangle;   // x, y, width, height in pixels
   int channel;       // 0 ... 3; 4: the first three as colours
   float tiles;       // that fit into the rectangle's height
-  float slice;       // 0 ... 1, of a volume
+  float slice;       // 0 ... 1, of a volume; the level of view_deck.comp
   float mip;
   int is_signed;     // numbers are -1 ... 1
-  int histogram;     // of how many texels there is one; 0: of none
+  int histogram;     // numbers counted in it
 } push;
 
 vec3 shown(vec4 value) {

@@ -1,5 +1,6 @@
-// A volume as a body: a deck of the lumps in which a channel exceeds a level that rises with height, seen from above and lit
-// by a low sun. No cloud yet (light stops at the surface), but what the noise will do to one. Unit: a side of the texture.
+// A volume as a body: a deck of the lumps in which a channel exceeds a level that rises with height, seen from above
+// and lit by a sun 34 degrees high. Of colours (channel 4) it takes the first. No cloud yet (light stops at the
+// surface), but what the noise will do to one. Unit: a side of the texture.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -16,6 +17,9 @@ const vec3 kSkylight = vec3(0.16, 0.25, 0.40);
 
 // Above 0 in the body.
 float inside(vec3 p, float mip) { return textureLod(noise, p, mip)[push.channel & 3] - push.slice - kRise * max(p.z, 0.0); }
+
+// Which mip has texels as large as a pixel is at a distance.
+float mip_at(float t, float pixel) { return log2(max(float(textureSize(noise, 0).x) * pixel * t, 1.0)); }
 
 float sunlit(vec3 p) {
   float most = 0.0;
@@ -37,11 +41,11 @@ float distance_to_body(vec3 direction, float pixel) {
   float t = (kTop - kEye.z) / direction.z;
   float step_length = 0.003;
   for (int i = 0; i < 320 && t < 10.0; i++) {
-    if (inside(kEye + direction * t, log2(max(128.0 * pixel * t, 1.0))) > 0.0) {
+    if (inside(kEye + direction * t, mip_at(t, pixel)) > 0.0) {
       float outside_at = t - step_length;
       for (int j = 0; j < 8; j++) {
         const float middle = 0.5 * (outside_at + t);
-        if (inside(kEye + direction * middle, log2(max(128.0 * pixel * middle, 1.0))) > 0.0) t = middle;
+        if (inside(kEye + direction * middle, mip_at(middle, pixel)) > 0.0) t = middle;
         else outside_at = middle;
       }
       return t;
@@ -52,13 +56,14 @@ float distance_to_body(vec3 direction, float pixel) {
   return -1.0;
 }
 
-vec3 lit(vec3 p, float t, float mip) {
-  const float e = 0.5 / 128.0 * exp2(mip);
+vec3 lit(vec3 p, float mip) {
+  const float side = float(textureSize(noise, 0).x);
+  const float e = 0.5 / side * exp2(mip);
   const vec2 d = vec2(e, 0.0);
   const vec3 slope = vec3(inside(p + d.xyy, mip) - inside(p - d.xyy, mip), inside(p + d.yxy, mip) - inside(p - d.yxy, mip),
                           inside(p + d.yyx, mip) - inside(p - d.yyx, mip));
   const vec3 normal = -slope / max(length(slope), 1.0e-6);
-  const float open = clamp(0.75 - 2.2 * inside(p + normal * 0.10, 3.0), 0.25, 1.0);  // of the sky: how much is left of the body ahead
+  const float open = clamp(0.75 - 2.2 * inside(p + normal * 0.10, log2(side / 16.0)), 0.25, 1.0);  // of the sky: how much is left of the body ahead
   const float sun = max(0.8 * dot(normal, kSun) + 0.2, 0.0) * sunlit(p + normal * 0.006);
   return sun * kSunlight + open * (0.6 + 0.4 * normal.z) * kSkylight;
 }
@@ -73,7 +78,7 @@ void main() {
   if (direction.z < -1.0e-3) {
     const float t = distance_to_body(direction, pixel);
     const vec3 haze = sky(vec3(direction.xy, 0.0));
-    if (t > 0.0) color = mix(haze, lit(kEye + direction * t, t, log2(max(128.0 * pixel * t, 1.0))), exp(-0.22 * t));
+    if (t > 0.0) color = mix(haze, lit(kEye + direction * t, mip_at(t, pixel)), exp(-0.22 * t));
     else color = haze;
   }
   show(at, pow(clamp(color, 0.0, 1.0), vec3(1.0 / 2.2)));

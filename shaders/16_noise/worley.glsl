@@ -1,20 +1,20 @@
 // Cellular noise: every cell of a lattice holds one random point. Unit: one cell; it repeats after `period` cells.
 //
-// Worley's (Worley 1996) is the distance to the nearest point. Here it is inverted and squared: 1 - d^2 is a round dome on
-// every point, as the tops of a cauliflower are, where 1 - d is a cone with a tip. It also needs no square root, which
-// Vulkan lets a device round as it likes.
+// Worley's (Worley 1996) is the distance to the nearest point. Here it is inverted and squared: 1 - d^2 is a round dome
+// on every point, as the tops of a cauliflower are, where 1 - d is a cone with a tip. It also needs no square root,
+// which Vulkan lets a device round as it likes.
 //
-// Alligator noise (the name is that of the modelling program it comes from): every point is a soft ball of its own strength,
-// and the noise is by how much the strongest ball at a place exceeds the second. Where two are equal it is 0: creases, as
-// in a reptile's skin, round bodies of voxels.
+// Alligator noise (the name is that of the modelling program it comes from): every point is a soft ball of its own
+// strength, and the noise is by how much the strongest ball at a place exceeds the second. Where two are equal it is 0:
+// creases, as in a reptile's skin, round bodies of voxels.
 #ifndef WELKIN_NOISE_WORLEY_GLSL
 #define WELKIN_NOISE_WORLEY_GLSL
 
 #include "16_noise/hash.glsl"
 
 // [worley]
-// Square of the distance from p to the nearest point, at most 1. A point nearer than 1 lies in this cell or in one of the 26
-// around it. In a place without one the domes have ended, and it does not matter where the nearest is.
+// Square of the distance from p to the nearest point, at most 1. A point nearer than 1 lies in this cell or in one of
+// the 26 around it. In a place without one the domes have ended, and it does not matter where the nearest is.
 float nearest_squared(vec3 p, int period, uint seed) {
   vec3 corner = floor(p);
   vec3 d = p - corner;

@@ -198,7 +198,8 @@ TEST_CASE("truth: Perlin noise has mean 0, the variance of its closed form, and 
     const double expected = perlin_variance(part == Part::perlin3 ? 3 : 2), n = static_cast<double>(values.size());
     CHECK(std::abs(mean) < 4 * std::sqrt(expected / n));  // 4 standard errors
     CHECK(square == Approx(expected).margin(4 * std::sqrt((fourth - square * square) / n)));
-    CHECK(most <= 1.0);
+    // In 3-D the best gradients of a cell's eight corners make 1.0363, not far from its middle; in 2-D it is 1.
+    CHECK(most <= (part == Part::perlin3 ? 1.037 : 1.0));
     for (NoiseItem& item : items) item.x = std::floor(item.x), item.y = std::floor(item.y), item.z = std::floor(item.z);
     double at_corners = 0;
     for (const Four& v : evaluate_noise(part, items))

@@ -25,7 +25,7 @@ std::vector<std::string> comments(const std::string& what) {
   return {what, "the same bits on every device", "source: WELKIN_TABLE=docs/generated gpu_tests \"[16_table]\""};
 }
 
-TextureRecipe default_recipe(NoiseKind kind, uint32_t side) {
+TextureRecipe seeded_recipe(NoiseKind kind, uint32_t side) {
   TextureRecipe recipe = small_recipe(kind, side, TexelFormat::bits16);
   recipe.seed = static_cast<uint32_t>(1000 * static_cast<int>(kind));
   return recipe;
@@ -50,7 +50,7 @@ TEST_CASE("table of what the textures hold", "[.][16_table]") {
         Row{NoiseKind::curl, 128, "curl", {"x", "y", "z", "stream function"}},
         Row{NoiseKind::weather, 256, "weather", {"coverage", "height", "type", "wetness"}},
         Row{NoiseKind::alligator, 64, "alligator", {"4 cells", "8 cells", "16 cells", "their sum"}}}) {
-    const TextureRecipe recipe = default_recipe(row.kind, row.side);
+    const TextureRecipe recipe = seeded_recipe(row.kind, row.side);
     const std::vector<Four> texels = numbers_of(recipe, made_words(recipe));
     for (size_t channel = 0; channel < 4; ++channel) {
       if (*row.channels[channel] == '\0') continue;  // two texels a cell at this size
@@ -121,7 +121,7 @@ static std::vector<Four> compressed(const std::vector<Four>& texels, size_t side
 
 TEST_CASE("table of formats", "[.][16_table]") {
   std::vector<std::vector<std::string>> rows;
-  const TextureRecipe exact = default_recipe(NoiseKind::base, 128);
+  const TextureRecipe exact = seeded_recipe(NoiseKind::base, 128);
   const std::vector<Four> reference = numbers_of(exact, made_words(exact));
   const auto add = [&](const char* name, uint64_t bytes, const std::vector<Four>& texels) {
     double worst = 0, square = 0;
@@ -133,7 +133,7 @@ TEST_CASE("table of formats", "[.][16_table]") {
     rows.push_back(
         {name, fmt::format("{}", bytes), fmt::format("{:.2g}", worst), fmt::format("{:.2g}", std::sqrt(square))});
   };
-  TextureRecipe full = default_recipe(NoiseKind::base, 128);
+  TextureRecipe full = seeded_recipe(NoiseKind::base, 128);
   const uint64_t sixteen_bits = full.bytes();
   add("BC7 mode 6", sixteen_bits / 8, compressed(reference, 128, true));
   add("BC4 once a channel", sixteen_bits / 4, compressed(reference, 128, false));

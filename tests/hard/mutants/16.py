@@ -37,4 +37,9 @@ MUTANTS = [
      "rounded += 0xFFFu + ((rounded >> 13u) & 1u);", "", "hard: rounding to a format*"),
     ("bytes rounded down", "16_noise/quantize.glsl",
      "* most + 0.5;", "* most;", "hard: rounding to a format*"),
+    ("ties of halves that are rounded down", "16_noise/quantize.glsl",
+     "rounded += 0xFFFu + ((rounded >> 13u) & 1u);", "rounded += 0xFFFu;", "hard: rounding to a format*"),
+    ("2-D cells that do not wrap", "16_noise/hash.glsl",
+     "ivec2 wrapped(ivec2 cell, int period) { return cell & (period - 1); }", "ivec2 wrapped(ivec2 cell, int period) { return cell; }",
+     "truth: a period further the noise is the same*"),
 ]
