@@ -19,7 +19,7 @@ float reciprocal(float x) {
   uint digits = ((bits & 0x7FFFFFu) | 0x800000u) >> 8u;        // m 2^15
   uint start = 0x80000000u / digits;                           // 2^16 / m, to one part in 2^14
   precise float y = float(start) * uintBitsToFloat(uint(238 - exponent) << 23u);
-  y = y * (2.0 - x * y);  // to one part in 2^28
+  y = y * (2.0 - x * y);  // to the last digits of a float
   return y;
 }
 // [/reciprocal]
