@@ -141,7 +141,7 @@ std::vector<Knob> cloud_knobs() {
            .meaning = "of cloud.grid=march, a cell of the grid's shortest side",
            .minimum = 1,
            .maximum = 16,
-           .initial = 1,
+           .initial = 2,
            .integer = true},
           {.name = "cloud.grid_format",
            .meaning = "how samples are kept: float32, or bytes where all are 1 or less",

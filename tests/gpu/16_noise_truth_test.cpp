@@ -36,7 +36,9 @@ std::vector<NoiseItem> places(size_t count, double reach, float cells, Random& r
     const auto one = [&](uint32_t how) {
       const float v = static_cast<float>(random.uniform(-reach, reach));
       if (how == 0) return std::round(v);
-      if (how == 1) return std::nextafter(std::round(v), random.next() % 2 == 0 ? 1e9f : -1e9f);
+      // Beside 0 the next number is denormal, which a device may take for 0: 1e-12.
+      const float whole = std::round(v), side = random.next() % 2 == 0 ? 1.0f : -1.0f;
+      if (how == 1) return whole == 0.0f ? side * 1e-12f : std::nextafter(whole, side * 1e9f);
       return v;
     };
     item.x = one(kind % 6), item.y = one(kind / 6 % 6), item.z = one(kind / 36 % 6);
