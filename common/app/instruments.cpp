@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdio>
 #include <ctime>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
 
 #include "common/app/progress.hpp"
 #include "common/app/session.hpp"
@@ -192,23 +194,71 @@ Exit run_sweep(const Session& session) {
   return Exit::ok;
 }
 
-Exit run_probe(const Session& session) {
-  const std::vector<std::string> inputs{"altitude_km", "view_zenith_deg", "sun_zenith_deg", "relative_azimuth_deg"};
-  const CsvTable table = read_csv(session.options.probe, inputs);
-  std::vector<ProbeRay> rays(table.rows);
-  const auto fill = [&](const char* name, double ProbeRay::*field, double low, double high) {
-    const std::vector<double>& column = table.column(name);
-    for (size_t row = 0; row < table.rows; ++row) {
-      if (!(column[row] >= low && column[row] <= high))
-        fail("{}: row {}: {} is {:g}; accepted is {:g} to {:g}", session.options.probe, row + 1, name, column[row], low,
-             high);
-      rays[row].*field = column[row];
-    }
+namespace {
+
+// The columns of a probe's rays: as seen from an altitude, or in the tangent frame of the scene's place.
+const std::vector<std::string> kFromAltitude{"altitude_km", "view_zenith_deg", "sun_zenith_deg",
+                                             "relative_azimuth_deg"};
+const std::vector<std::string> kInTangentFrame{
+    "east_km", "north_km", "up_km", "view_zenith_deg", "view_azimuth_deg", "sun_zenith_deg", "sun_azimuth_deg"};
+
+// A number of a row within its range.
+double probe_number(const Session& session, const CsvTable& table, const std::string& name, size_t row) {
+  const bool azimuth = name.ends_with("azimuth_deg"),
+             place = name == "east_km" || name == "north_km" || name == "up_km";
+  const double low = place ? -kHighest_km : azimuth ? -360.0 : 0.0;
+  const double high = place || name == "altitude_km" ? kHighest_km : azimuth ? 360.0 : 180.0;
+  const double value = table.column(name)[row];
+  if (!(value >= low && value <= high))
+    fail("{}: row {}: {} is {:g}; accepted is {:g} to {:g}", session.options.probe, row + 1, name, value, low, high);
+  return value;
+}
+
+// Both forms say the same of air that is alike everywhere: altitude and angles follow from the place.
+ProbeRay probe_ray(const Session& session, const CsvTable& table, size_t row, bool tangent) {
+  const auto number = [&](const char* name) { return probe_number(session, table, name, row); };
+  const double zenith_deg = number("view_zenith_deg"), sun_zenith_deg = number("sun_zenith_deg");
+  if (!tangent) {
+    const double azimuth_deg = number("relative_azimuth_deg"), sun_deg = session.scene.sun.azimuth_deg;
+    return {number("altitude_km"),
+            zenith_deg,
+            sun_zenith_deg,
+            azimuth_deg,
+            {0.0, 0.0, number("altitude_km")},
+            direction_from(zenith_deg, sun_deg + azimuth_deg),
+            direction_from(sun_zenith_deg, sun_deg)};
+  }
+  ProbeRay ray{.position_km = {number("east_km"), number("north_km"), number("up_km")},
+               .direction = direction_from(zenith_deg, number("view_azimuth_deg")),
+               .sun = direction_from(sun_zenith_deg, number("sun_azimuth_deg"))};
+  const double radius_km = session.scene.planet.ground_radius_km;
+  const CameraPose pose{.position_km = ray.position_km};
+  ray.altitude_km = altitude_km(pose, radius_km);
+  if (!(ray.altitude_km >= -1e-9 && ray.altitude_km <= kHighest_km))
+    fail("{}: row {}: altitude {:g} km; accepted is a place from 0 to {:g} km above the ground", session.options.probe,
+         row + 1, ray.altitude_km, kHighest_km);
+  ray.altitude_km = std::max(ray.altitude_km, 0.0);
+  const LocalFrame at = local_frame(pose, radius_km);
+  const auto zenith_of = [&](const glm::dvec3& d) {
+    return glm::degrees(std::atan2(glm::length(glm::cross(d, at.up)), glm::dot(d, at.up)));
   };
-  fill("altitude_km", &ProbeRay::altitude_km, 0.0, kHighest_km);
-  fill("view_zenith_deg", &ProbeRay::view_zenith_deg, 0.0, 180.0);
-  fill("sun_zenith_deg", &ProbeRay::sun_zenith_deg, 0.0, 180.0);
-  fill("relative_azimuth_deg", &ProbeRay::relative_azimuth_deg, -360.0, 360.0);
+  const auto azimuth_of = [&](const glm::dvec3& d) {
+    return glm::degrees(std::atan2(glm::dot(d, at.east), glm::dot(d, at.north)));
+  };
+  ray.view_zenith_deg = zenith_of(ray.direction), ray.sun_zenith_deg = zenith_of(ray.sun);
+  ray.relative_azimuth_deg = azimuth_of(ray.direction) - azimuth_of(ray.sun);
+  return ray;
+}
+
+}  // namespace
+
+Exit run_probe(const Session& session) {
+  const std::vector<std::string> header = read_csv(session.options.probe, {}).names;
+  const bool tangent = std::find(header.begin(), header.end(), "east_km") != header.end();
+  const std::vector<std::string>& inputs = tangent ? kInTangentFrame : kFromAltitude;
+  const CsvTable table = read_csv(session.options.probe, inputs);
+  std::vector<ProbeRay> rays;
+  for (size_t row = 0; row < table.rows; ++row) rays.push_back(probe_ray(session, table, row, tangent));
 
   const std::vector<ProbeResult> results = session.make_program()->probe(rays);
   std::vector<std::string> names = inputs;

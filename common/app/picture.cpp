@@ -46,6 +46,8 @@ void explain(const Session& session, const Program& program, Renderer& renderer,
   else
     for (const Constituent& effect : constituents(session.scene))
       fmt::print("  {:<14} {:<4} {}\n", effect.name, effect.on ? "on" : "off", effect.why);
+  if (session.chapter.number < 17 && (!session.scene.clouds.empty() || session.scene.weather))
+    fmt::print("  {:<14} {:<4} {}\n", "clouds", "off", "in the scene, drawn from chapter 17 on");
   fmt::print("passes:\n");
   for (const gpu::PassTime& pass : renderer.pass_times())
     fmt::print("  {:<20} {:>10.3f} ms\n", pass.name, pass.milliseconds);

@@ -26,6 +26,8 @@ struct Context {
 // A ray of --probe, in degrees as in the file; relative azimuth 0 looks towards the sun.
 struct ProbeRay {
   double altitude_km, view_zenith_deg, sun_zenith_deg, relative_azimuth_deg;
+  // The same in the tangent frame of the scene's place (unit vectors), for what differs from place to place.
+  glm::dvec3 position_km{0.0}, direction{0.0, 0.0, 1.0}, sun{0.0, 0.0, 1.0};
 };
 struct ProbeResult {
   glm::dvec3 radiance, transmittance;

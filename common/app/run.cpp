@@ -188,7 +188,7 @@ std::string restoring_text(const Session& session, const CameraPose& pose, const
   scene.settings.clear();
   for (const Knob& knob : session.chapter.knobs)
     if (session.settings.was_set(knob.name)) scene.settings.emplace_back(knob.name, session.settings.text(knob.name));
-  if (scene.terrain) scene.terrain->height_map = portable_path(scene.terrain->height_map, directory);
+  each_file(scene, [&](std::string& file) { file = portable_path(file, directory); });
   const std::string text = write_scene(scene);
   if (!(parse_scene(text, "the scene of this picture") == scene))
     fail("this scene cannot be restored from what is written of it");

@@ -84,7 +84,7 @@ VkImageAspectFlags aspect_of(VkFormat format) {
                                                                          : VK_IMAGE_ASPECT_COLOR_BIT;
 }
 
-Sampler create_sampler(const Device& device, Border u, Border v, VkFilter filter) {
+Sampler create_sampler(const Device& device, Border u, Border v, VkFilter filter, Border w) {
   const auto mode = [](Border border) {
     return border == Border::clamp ? VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE : VK_SAMPLER_ADDRESS_MODE_REPEAT;
   };
@@ -93,7 +93,7 @@ Sampler create_sampler(const Device& device, Border u, Border v, VkFilter filter
                                  .minFilter = filter,
                                  .addressModeU = mode(u),
                                  .addressModeV = mode(v),
-                                 .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                 .addressModeW = mode(w),
                                  .maxLod = VK_LOD_CLAMP_NONE};
   return create<Sampler>(device, vkCreateSampler, info, "vkCreateSampler");
 }

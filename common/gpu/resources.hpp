@@ -50,7 +50,7 @@ VkImageAspectFlags aspect_of(VkFormat format);
 // How a shader reads between texels, and at the borders: the last texel, or around to the first.
 enum class Border { clamp, repeat };
 Sampler create_sampler(const Device& device, Border u = Border::clamp, Border v = Border::clamp,
-                       VkFilter filter = VK_FILTER_LINEAR);
+                       VkFilter filter = VK_FILTER_LINEAR, Border w = Border::clamp);
 
 struct Buffer {
   Memory memory;

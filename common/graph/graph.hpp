@@ -40,6 +40,7 @@ struct BufferInfo {
 struct Sampling {
   gpu::Border u = gpu::Border::clamp, v = gpu::Border::clamp;
   VkFilter filter = VK_FILTER_LINEAR;
+  gpu::Border w = gpu::Border::clamp;
 };
 
 inline constexpr int kAllMips = -1;
@@ -131,6 +132,8 @@ class Graph {
   // Filled before; no pass writes it, any may read it in layout GENERAL.
   Resource add_filled(std::string name, gpu::Image&& image);
   Resource add_filled(std::string name, gpu::Buffer&& buffer);
+  // The same, made by `fill` when a pass that is needed reads it, outside of frames, and freed when none does any more.
+  Resource add_filled(std::string name, ImageInfo info, std::function<gpu::Image()> fill);
   // Lives elsewhere. between_frames: who else touches it; with layout UNDEFINED its old content is not needed.
   Resource import(std::string name, const gpu::Image* image, gpu::Use between_frames = {});
   Resource import(std::string name, const gpu::Buffer* buffer);
@@ -170,7 +173,7 @@ class Graph {
   std::vector<std::string> resources(uint32_t owner) const;  // of one effect's that exist
   uint64_t bytes() const;                                    // of all that are its own
   uint64_t runs(const std::string& pass) const;              // 0 for a pass there is not
-  bool has_pass(uint32_t owner) const;                       // whether this effect has a pass that is needed
+  bool has_pass(uint32_t owner) const;  // whether this effect has a pass, or an image filled on demand, that is needed
 
  private:
   struct State {                            // what happened to a mip last
@@ -190,6 +193,7 @@ class Graph {
     BufferInfo buffer_info;
     std::array<gpu::Image, 2> own_images;  // [1]: of a history
     gpu::Buffer own_buffer;
+    std::function<gpu::Image()> fill;   // makes a filled image
     const gpu::Image* image = nullptr;  // imported
     const gpu::Buffer* buffer = nullptr;
     gpu::Use between_frames;
@@ -223,6 +227,7 @@ class Graph {
   };
 
   Resource hold(Held held);
+  static void start_states(Held& held);
   Held& held_of(Resource resource) { return held_.at(resource); }
   uint32_t parity() const { return static_cast<uint32_t>(frames_ & 1); }
   static const gpu::Image* image_of(const Held& held, bool second);
@@ -262,7 +267,7 @@ class Graph {
   std::vector<std::unique_ptr<Counted>> passes_;
   std::vector<Counted*> order_;                // of the passes that are needed
   std::map<std::string, uint64_t> past_runs_;  // of passes that were taken out
-  std::map<std::array<int, 3>, gpu::Sampler> samplers_;
+  std::map<std::array<int, 4>, gpu::Sampler> samplers_;
   std::vector<VkImageMemoryBarrier2> image_barriers_;
   std::vector<VkBufferMemoryBarrier2> buffer_barriers_;
 };

@@ -38,6 +38,12 @@ Graph::Graph(const gpu::Device& device, gpu::Pipelines& pipelines, const std::st
 
 Resource Graph::hold(Held held) {
   held.owner = owner_;
+  start_states(held);
+  held_.emplace(next_, std::move(held));
+  return next_++;
+}
+
+void Graph::start_states(Held& held) {
   const uint32_t mips = held.is_buffer ? 1 : std::max(held.info.mips, 1u);
   // What was filled before is visible to everybody.
   constexpr gpu::Use everybody{~VkPipelineStageFlags2{0}, ~VkAccessFlags2{0}, VK_IMAGE_LAYOUT_GENERAL};
@@ -47,8 +53,6 @@ Resource Graph::hold(Held held) {
              .readers = 1,
              .layout = held.is_buffer ? VK_IMAGE_LAYOUT_UNDEFINED : VK_IMAGE_LAYOUT_GENERAL};
   for (std::vector<State>& states : held.states) states.assign(mips, first);
-  held_.emplace(next_, std::move(held));
-  return next_++;
 }
 
 Resource Graph::add_image(std::string name, ImageInfo info) { return hold({.name = std::move(name), .info = info}); }
@@ -76,7 +80,9 @@ Resource Graph::add_filled(std::string name, gpu::Buffer&& buffer) {
 }
 
 Resource Graph::import(std::string name, const gpu::Image* image, gpu::Use between_frames) {
-  return hold({.name = std::move(name), .kind = Kind::imported, .image = image, .between_frames = between_frames});
+  Held held{.name = std::move(name), .kind = Kind::imported, .image = image, .between_frames = between_frames};
+  if (image != nullptr) held.info.mips = image->mips;
+  return hold(std::move(held));
 }
 
 Resource Graph::import(std::string name, const gpu::Buffer* buffer) {
@@ -89,6 +95,10 @@ void Graph::replace(Resource resource, const gpu::Image* image, gpu::Use between
   held.image = image, held.between_frames = between_frames, held.own_images[0] = {};
   held.states[0].assign(held.states[0].size(), {});
   held.outdated = true, held.version = ++versions_;
+}
+
+Resource Graph::add_filled(std::string name, ImageInfo info, std::function<gpu::Image()> fill) {
+  return hold({.name = std::move(name), .kind = Kind::filled, .info = info, .fill = std::move(fill)});
 }
 
 const gpu::Image* Graph::image_of(const Held& held, bool second) {
@@ -178,7 +188,7 @@ void Graph::make_all(VkExtent2D picture_size) {
   for (auto& [resource, held] : held_) {
     if (std::find(used.begin(), used.end(), &held) != used.end())
       allocate(held, picture_size);
-    else if (held.kind != Kind::filled && held.kind != Kind::imported)
+    else if ((held.kind != Kind::filled && held.kind != Kind::imported) || held.fill)
       held.own_images = {}, held.own_buffer = {}, held.outdated = true;
   }
   for (const Counted* counted : order_)
@@ -192,6 +202,11 @@ void Graph::make_all(VkExtent2D picture_size) {
 
 // Makes what is not there yet, or has another size now.
 void Graph::allocate(Held& held, VkExtent2D picture_size) {
+  if (held.fill && held.own_images[0].handle == VK_NULL_HANDLE) {
+    held.own_images[0] = held.fill();
+    start_states(held);
+    held.version = ++versions_;
+  }
   if (held.kind == Kind::filled || held.kind == Kind::imported) return;
   if (held.is_buffer) {
     if (held.own_buffer.handle != VK_NULL_HANDLE) return;
@@ -283,9 +298,9 @@ void Graph::check_fit(const Step& step, const gpu::ShaderBinding& wanted, const 
 }
 
 VkSampler Graph::sampler(const Sampling& sampling) {
-  gpu::Sampler& kept =
-      samplers_[{static_cast<int>(sampling.u), static_cast<int>(sampling.v), static_cast<int>(sampling.filter)}];
-  if (kept == VK_NULL_HANDLE) kept = gpu::create_sampler(*device_, sampling.u, sampling.v, sampling.filter);
+  gpu::Sampler& kept = samplers_[{static_cast<int>(sampling.u), static_cast<int>(sampling.v),
+                                  static_cast<int>(sampling.filter), static_cast<int>(sampling.w)}];
+  if (kept == VK_NULL_HANDLE) kept = gpu::create_sampler(*device_, sampling.u, sampling.v, sampling.filter, sampling.w);
   return kept;
 }
 
@@ -339,7 +354,10 @@ uint64_t Graph::runs(const std::string& pass) const {
 }
 
 bool Graph::has_pass(uint32_t owner) const {
-  return std::any_of(order_.begin(), order_.end(), [&](const Counted* counted) { return counted->owner == owner; });
+  return std::any_of(order_.begin(), order_.end(), [&](const Counted* counted) { return counted->owner == owner; }) ||
+         std::any_of(held_.begin(), held_.end(), [&](const auto& entry) {
+           return entry.second.owner == owner && entry.second.fill && bytes_of(entry.second) > 0;
+         });
 }
 
 std::string describe(const gpu::Use& use) {

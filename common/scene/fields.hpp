@@ -8,6 +8,7 @@
 //   f.given(key)                             whether the file says it (false where none is read)
 //   f.must(good, key, what, accepted)        refuses a file whose values do not go together
 //   f.reading, f.title                       whether a file is read; what messages call the section
+//   f.listing                                whether every field of a kind is asked for, whatever the others say
 #pragma once
 
 #include <algorithm>
@@ -35,7 +36,7 @@ struct More {
   bool required = false;
 };
 struct Visitor {
-  static constexpr bool reading = false;
+  static constexpr bool reading = false, listing = false;
   std::string title;
   bool given(const char*) const { return false; }
   void must(bool, const char*, const std::string&, const std::string&) const {}
@@ -263,6 +264,109 @@ void fields(F& f, Terrain& terrain, Scene& scene) {
          fmt::format("accepted is a number from 0 to {:g} km: no hill stands above the air", highest_km));
 }
 
+// How a body scatters: what its phase function does not have cannot be said.
+template <typename F>
+void phase_fields(F& f, Cloud& cloud) {
+  f("extinction_per_km", cloud.extinction_per_km, {0, 1000, "km^-1"}, "where density is 1");
+  f("single_scattering_albedo", cloud.single_scattering_albedo, ranges::share, "share of it that is scattering");
+  f("phase", cloud.phase, {.choices = {"henyey_greenstein", "droplets", "draine_mixture"}}, "phase function");
+  const bool mixture = cloud.phase == CloudPhase::draine_mixture, droplets = cloud.phase == CloudPhase::droplets;
+  if (F::listing || !droplets) f("g", cloud.g, ranges::asymmetry, "asymmetry; of a mixture, that of its first lobe");
+  if (F::listing || droplets)
+    f("droplet_diameter_um", cloud.droplet_diameter_um, {1.5, 50, "um"}, "of the fit of Jendersie and d'Eon 2023");
+  if (!F::listing && !mixture) return;
+  f("weight", cloud.weight, ranges::share, "of the first lobe of draine_mixture, the second has the rest");
+  f("alpha", cloud.alpha, {0, 100}, "of the first lobe; 0: Henyey-Greenstein, 1: Cornette-Shanks");
+  f("second_g", cloud.second_g, ranges::asymmetry, "of the second lobe");
+  f("second_alpha", cloud.second_alpha, {0, 100}, "of the second lobe");
+}
+
+// The altitude of a point of the tangent frame at the scene's place.
+inline double altitude_above(const Planet& planet, double east_km, double north_km, double up_km) {
+  return std::hypot(east_km, north_km, planet.ground_radius_km + up_km) - planet.ground_radius_km;
+}
+
+// A ball and a box stand in the tangent frame, which touches the ground at the scene's place and nowhere else.
+template <typename F>
+void must_be_in_the_air(F& f, const Cloud& cloud, const Planet& planet) {
+  const bool ball = cloud.kind == "sphere";
+  const glm::dvec3 low{cloud.east_km, cloud.north_km, cloud.up_km}, size = ball ? glm::dvec3(0.0) : cloud.size_km;
+  const double wide = ball ? cloud.radius_km : 0.0, highest_km = planet.top_radius_km - planet.ground_radius_km;
+  const auto nearest = [](double from, double size_km) { return std::clamp(0.0, from, from + size_km); };
+  const auto farthest = [](double from, double size_km) {
+    return std::abs(from) > std::abs(from + size_km) ? from : from + size_km;
+  };
+  const double lowest_km = altitude_above(planet, nearest(low.x, size.x), nearest(low.y, size.y), low.z) - wide;
+  const double top_km = altitude_above(planet, farthest(low.x, size.x), farthest(low.y, size.y), low.z + size.z) + wide;
+  f.must(lowest_km >= -1e-9, "up_km", fmt::format("a cloud that reaches {:g} km below the ground", -lowest_km),
+         "accepted is a cloud above the ground");
+  f.must(top_km <= highest_km, "up_km", fmt::format("a cloud that reaches {:g} km high", top_km),
+         fmt::format("accepted is a cloud below the top of the air, {:g} km", highest_km));
+}
+
+// What a body may say follows from its kind. Whether files can be read is found out when it is drawn.
+template <typename F>
+void fields(F& f, Cloud& cloud, Scene& scene) {
+  const double radius_km = scene.planet.ground_radius_km, highest_km = scene.planet.top_radius_km - radius_km;
+  const Range in_air{0, highest_km, "km"}, around{-4 * radius_km, 4 * radius_km, "km"};
+  f("kind", cloud.kind, {.choices = {"layer", "disc", "sphere", "grid", "noise"}}, "a section for each body",
+    {.required = true});
+  const bool disc = cloud.kind == "disc", sphere = cloud.kind == "sphere", grid = cloud.kind == "grid",
+             noise = cloud.kind == "noise";
+  f.title += fmt::format(" '{}'", cloud.kind);
+  f("name", cloud.name, ranges::name, "each once, where there is one");
+  if (!sphere && !grid) {
+    f("base_km", cloud.base_km, in_air, "altitude of its lower boundary", {.required = true});
+    f("top_km", cloud.top_km, in_air, "altitude of its upper boundary", {.required = true});
+    f.must(!f.reading || cloud.base_km < cloud.top_km, "top_km",
+           fmt::format("a cloud from {} km up to {} km", cloud.base_km, cloud.top_km),
+           "accepted is a top above the base");
+  }
+  if (disc || sphere || grid) {
+    const char* where = disc     ? "arc at the base from the scene's place to its axis"
+                        : sphere ? "of its centre, in the tangent frame of the scene's place"
+                                 : "of its lowest corner, in the tangent frame of the scene's place";
+    f("east_km", cloud.east_km, around, where);
+    f("north_km", cloud.north_km, around, where);
+    if (!disc) f("up_km", cloud.up_km, around, where, {.required = true});
+  }
+  if (disc)
+    f("radius_km", cloud.radius_km, {0.001, 1.4 * radius_km, "km"}, "arc at the base to the rim", {.required = true});
+  if (sphere) f("radius_km", cloud.radius_km, {0.001, highest_km, "km"}, "of the ball", {.required = true});
+  if (grid) {
+    f("file", cloud.file, {1, 1000, "", {}, "the name of a grid file, quoted"},
+      "samples of density at corners, looked for beside the scene file", {.required = true});
+    f("size_km", cloud.size_km, {0.001, 1000, "km"}, "of its box, eastwards, northwards and up", {.required = true});
+  }
+  if (noise) {
+    f("weather", cloud.weather, {1, 1000, "", {}, "\"procedural\" or the name of a PNG file, quoted"},
+      "coverage, height, type and wetness over the ground; one map for all bodies of a scene");
+    const auto other_map = [&](const Cloud& other) { return other.kind == "noise" && other.weather != cloud.weather; };
+    f.must(!f.reading || std::none_of(scene.clouds.begin(), scene.clouds.end(), other_map), "weather",
+           "second weather map", "accepted is one for all bodies of a scene");
+    f("extent_km", cloud.extent_km, {1, 4000, "km"}, "side of the weather map's square");
+    f("coverage", cloud.coverage, ranges::share, "0: none; 0.5: as the weather map says; 1: the whole sky");
+    f("type", cloud.type, ranges::share, "stratus 0 to nimbostratus 1 in seven steps; without it the weather map's");
+    f("seed", cloud.seed, {0, 1e6}, "which part of noise and weather is seen");
+  }
+  phase_fields(f, cloud);
+  if (!cloud.name.empty()) must_be_unique(f, scene.clouds, "cloud");
+  f.must(!f.reading || scene.clouds.size() <= kMostClouds, "kind", "too many clouds",
+         fmt::format("accepted are up to {}", kMostClouds));
+  if (F::reading && (sphere || grid)) must_be_in_the_air(f, cloud, scene.planet);
+}
+
+// One word for a sky: chapters/17_cloud_shapes/cloud_bodies.cpp has the bodies.
+template <typename F>
+void fields(F& f, Weather& weather, Scene& scene) {
+  f("preset", weather.preset, {.choices = {"clear", "fair", "broken", "overcast", "storm", "mackerel"}},
+    "the clouds of a kind of weather", {.knob = "weather.preset"});
+  f("seed", weather.seed, {0, 1e6}, "which part of noise and weather is seen");
+  const auto own_map = [](const Cloud& cloud) { return cloud.weather != "procedural"; };
+  f.must(!f.reading || std::none_of(scene.clouds.begin(), scene.clouds.end(), own_map), "",
+         "[weather] beside a weather map", "accepted is one of the two");
+}
+
 template <typename F>
 void fields(F& f, Post& post, Scene&) {
   f("exposure", post.manual, {.choices = {"auto", "manual"}}, "metered, from chapter 06 on, or set by hand",
@@ -288,6 +392,8 @@ void sections(Scene& scene, Visit&& visit) {
   visit("view", scene.views);
   visit("path", scene.paths);
   visit("terrain", scene.terrain);
+  visit("cloud", scene.clouds);
+  visit("weather", scene.weather);
   visit("post", scene.post);
 }
 // [/table]

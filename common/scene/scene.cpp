@@ -128,9 +128,16 @@ Scene load_scene(const std::string& name_or_file, const fs::path& scenes_directo
   }
   if (!text) fail("scene file {}: this picture carries no scene; accepted is a .png that a chapter wrote", shown);
   Scene scene = parse_scene(*text, picture ? shown + " (embedded scene)" : shown);
-  if (scene.terrain && !scene.terrain->height_map.empty())
-    scene.terrain->height_map = find_beside(path.parent_path(), scene.terrain->height_map);
+  each_file(scene, [&](std::string& file) { file = find_beside(path.parent_path(), file); });
   return scene;
+}
+
+void each_file(Scene& scene, const std::function<void(std::string&)>& visit) {
+  if (scene.terrain && !scene.terrain->height_map.empty()) visit(scene.terrain->height_map);
+  for (Cloud& cloud : scene.clouds) {
+    if (!cloud.file.empty()) visit(cloud.file);
+    if (cloud.weather != "procedural") visit(cloud.weather);
+  }
 }
 
 std::string portable_path(const std::string& file, const fs::path& directory) {

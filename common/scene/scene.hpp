@@ -6,6 +6,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <string>
@@ -87,6 +88,36 @@ struct Terrain {
   bool operator==(const Terrain&) const = default;
 };
 
+enum class CloudPhase { henyey_greenstein, droplets, draine_mixture };
+
+// A body of cloud. What its kind does not have is not said. Chapters below 17 have none.
+struct Cloud {
+  std::string kind;  // "layer", "disc", "sphere", "grid" or "noise"
+  std::string name;
+  double base_km = 1.5, top_km = 4.0;                  // layer, disc, noise: altitudes
+  double east_km = 0.0, north_km = 0.0, up_km = 20.0;  // sphere: centre; grid: lowest corner; disc: arcs to its axis
+  double radius_km = 1.0;                              // sphere; disc: arc at the base
+  std::string file;                                    // grid
+  glm::dvec3 size_km{1.0};                             // grid
+  std::string weather = "procedural";                  // noise: or a PNG
+  double extent_km = 96.0;                             // noise: side of the weather's square
+  double coverage = 0.5;                               // noise
+  std::optional<double> type;                          // noise: without it the weather's
+  int seed = 1;                                        // noise
+  double extinction_per_km = 40.0, single_scattering_albedo = 1.0;
+  CloudPhase phase = CloudPhase::henyey_greenstein;
+  double g = 0.85, droplet_diameter_um = 20.0;
+  double weight = 0.9, alpha = 0.0, second_g = -0.3, second_alpha = 0.0;  // of a mixture
+  bool operator==(const Cloud&) const = default;
+};
+
+// Clouds by one word (chapter 17): bodies of noise that need not be written.
+struct Weather {
+  std::string preset = "fair";  // clear, fair, broken, overcast, storm, mackerel
+  int seed = 1;
+  bool operator==(const Weather&) const = default;
+};
+
 struct Post {
   bool manual = false;           // exposure set by hand even where a chapter has a light meter (06 on)
   double exposure_ev = 0.0;      // set by hand: stops, on top of the chapter's base exposure
@@ -103,6 +134,8 @@ struct Scene {
   std::vector<View> views;  // at least one; the first is the default
   std::vector<Path> paths;
   std::optional<Terrain> terrain;
+  std::vector<Cloud> clouds;
+  std::optional<Weather> weather;
   Post post;
   // [settings] knob = value, applied before --set: knobs of chapters only, those of the scene are its fields
   std::vector<std::pair<std::string, std::string>> settings;
@@ -125,7 +158,7 @@ Scene parse_scene(const std::string& text, const std::string& file);
 std::string write_scene(const Scene& scene);
 
 // The number of views and settings a file may have. The view that a picture adds to its scene is not counted.
-inline constexpr size_t kMostViews = 64, kMostSettings = 256;
+inline constexpr size_t kMostViews = 64, kMostSettings = 256, kMostClouds = 64;
 inline constexpr const char* kRestoredView = "restored";
 // What is said where time should pass and nobody knows how the sun moves.
 inline constexpr const char* kNeedsLatitude = "accepted beside latitude_deg in [sun], about whose pole the sun turns";
@@ -133,6 +166,8 @@ inline constexpr const char* kNeedsLatitude = "accepted beside latitude_deg in [
 // The name of a file as a scene in `directory` may carry it: the way from there, or the file's own name where that
 // would tell how the disk around both is laid out. A scene finds it by either.
 std::string portable_path(const std::string& file, const std::filesystem::path& directory);
+// Calls visit(name) for the files that a scene names: maps, grids.
+void each_file(Scene& scene, const std::function<void(std::string&)>& visit);
 
 // One effect of the scene and whether it is simulated, for --explain: "ozone", on, "medium 'ozone' in scene".
 struct Constituent {

@@ -15,7 +15,7 @@ struct Row {
 };
 
 struct RowVisitor : Visitor {
-  static constexpr bool reading = true;  // defaults of a kind are set
+  static constexpr bool reading = true, listing = true;  // defaults of a kind are set
   std::string section, kind;
   std::vector<Row> rows;
 
@@ -69,6 +69,12 @@ inline std::vector<Row> scene_rows() {
         visitor.kind = kind;
         fields(visitor, member.front(), scene);
       }
+    else if constexpr (std::is_same_v<std::decay_t<decltype(member)>, std::vector<Cloud>>)
+      for (const char* kind : {"layer", "disc", "sphere", "grid", "noise"}) {
+        member = {Cloud{.kind = kind}};
+        visitor.kind = kind;
+        fields(visitor, member.front(), scene);
+      }
     else if constexpr (requires { member.emplace_back(); })
       fields(visitor, member.emplace_back(), scene);
     else if constexpr (requires { member.emplace(); })
@@ -95,8 +101,10 @@ inline std::string scene_fields_csv() {
   }
   std::string out = "section,key,kinds,accepted,default,meaning\n";
   for (const Row& row : rows) {
-    for (std::string cell : {row.section, "`" + row.key + "`", row.kind == "rayleigh mie ozone" ? "all" : row.kind,
-                             row.accepted, row.initial, row.meaning}) {
+    for (std::string cell :
+         {row.section, "`" + row.key + "`",
+          row.kind == "rayleigh mie ozone" || row.kind == "layer disc sphere grid noise" ? "all" : row.kind,
+          row.accepted, row.initial, row.meaning}) {
       for (size_t i = cell.find('"'); i != cell.npos; i = cell.find('"', i + 2)) cell.insert(i, 1, '"');
       out += '"' + cell + "\",";
     }

@@ -92,6 +92,10 @@ const char* const kExtremes[] = {"nan",
                                  "\"draine\"",
                                  "\"tent\""};
 const char* const kPieces[] = {"\n[clouds]\n",
+                               "\n[[cloud]]\nkind = \"layer\"\nbase_km = 1\ntop_km = 2\n",
+                               "\n[weather]\n",
+                               "kind = \"vdb\"\n",
+                               "phase = \"droplets\"\n",
                                "\n[[medium]]\n",
                                "\n[[view]]\n",
                                "\n[sun]\n",
@@ -154,7 +158,7 @@ std::string piece_of_table() {
   const welkin::test::Row& row = any_of(rows);
   const std::string value =
       row.number && below(2) ? fmt::format("{}", below(2) ? row.range.minimum : row.range.maximum) : any_of(kExtremes);
-  const bool many = row.section == "view" || row.section == "medium" || row.section == "path";
+  const bool many = row.section == "view" || row.section == "medium" || row.section == "path" || row.section == "cloud";
   const std::string head =
       below(2) || row.section.empty() ? "\n" : fmt::format(fmt::runtime(many ? "\n[[{}]]\n" : "\n[{}]\n"), row.section);
   return fmt::format("{}{} = {}\n", head, row.key, value);
@@ -238,6 +242,16 @@ std::string hostile(size_t which) {
   }
 }
 
+// A body of each kind and phase function.
+std::vector<welkin::Cloud> clouds() {
+  using enum welkin::CloudPhase;
+  return {{.kind = "layer", .name = "deck", .phase = droplets},
+          {.kind = "disc", .name = "coin", .radius_km = 5.0, .phase = draine_mixture},
+          {.kind = "sphere", .up_km = 9.0},
+          {.kind = "grid", .up_km = 1.0, .file = "a.grid"},
+          {.kind = "noise", .type = 0.5}};
+}
+
 bool within(double value, double minimum, double maximum) { return value >= minimum && value <= maximum; }
 bool within(const glm::dvec3& v, double minimum, double maximum) {
   return within(v.x, minimum, maximum) && within(v.y, minimum, maximum) && within(v.z, minimum, maximum);
@@ -283,6 +297,14 @@ std::string broken(const Scene& scene) {
     if (!within(terrain->height_km, 0, std::min(20.0, height))) return "height of terrain";
     if (!within(terrain->size, 64, 4096) || !within(terrain->seed, 0, 1e6)) return "size";
   }
+  if (scene.clouds.size() > 64) return "number of clouds";
+  for (const welkin::Cloud& cloud : scene.clouds) {
+    if (!within(cloud.extinction_per_km, 0, 1000) || !within(cloud.single_scattering_albedo, 0, 1)) return "extinction";
+    if (!within(cloud.droplet_diameter_um, 1.5, 50) || !within(cloud.coverage, 0, 1)) return "droplets, coverage";
+    if (!within(cloud.base_km, 0, height) && cloud.kind != "sphere" && cloud.kind != "grid") return "base";
+    if ((cloud.kind == "layer" || cloud.kind == "noise") && !(cloud.top_km > cloud.base_km)) return "top";
+    if (cloud.kind == "sphere" && !within(cloud.radius_km, 0.001, 0.5 * height)) return "radius";
+  }
   for (const auto& [knob, value] : scene.settings)
     if (knob.empty() || value.empty() || value.find('\n') != std::string::npos) return "settings";
   const std::string written = welkin::write_scene(scene);
@@ -295,6 +317,8 @@ std::string broken(const Scene& scene) {
 bool limits_hold() {
   Scene whole = welkin::parse_scene(welkin::read_file(kScenes / "earth.toml", 1 << 20), "earth");
   whole.terrain = welkin::Terrain{.signs_azimuth_deg = 1.0};
+  whole.clouds = clouds();
+  whole.weather.emplace();
   whole.sun.latitude_deg = 1.0, whole.sun.longitude_deg = 1.0;
   const std::string text = welkin::write_scene(whole);
   size_t tried = 0;
@@ -374,6 +398,8 @@ int main(int argc, char** argv) {
     corpus.emplace_back(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
     Scene scene = welkin::parse_scene(corpus.back(), path.string());
     scene.paths = {{"p", {scene.views[0].name, scene.views[1].name}, {0.0, 2.5}, {0.0, 60.0}}};
+    scene.clouds = clouds();
+    scene.weather = welkin::Weather{.preset = "storm"};
     corpus.push_back(welkin::write_scene(scene));
   }
   Counts counts;

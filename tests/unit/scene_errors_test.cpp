@@ -41,10 +41,10 @@ TEST_CASE("each refusal names file, line, column and what is accepted", "[scene]
       {"", "no views at f:1:1: a scene has at least one [[view]]"},
       {"wind = 1\n" + kView,
        "unknown section or key 'wind' at f:2:1: known are name, time_s, version, planet, medium, sun, "
-       "view, path, terrain, post, settings"},
+       "view, path, terrain, cloud, weather, post, settings"},
       {kView + "[[fog]]\n",
        "unknown section or key 'fog' at f:4:3: known are name, time_s, version, planet, medium, sun, view, path, "
-       "terrain, post, settings"},
+       "terrain, cloud, weather, post, settings"},
       {"time_s = 60\n" + kView,
        "time_s in a scene without a latitude at f:2:10: accepted beside latitude_deg in [sun], about whose pole the "
        "sun "
