@@ -82,6 +82,7 @@ bool is_homogeneous(CloudBody body) { return body.kind != kCloudGrid && body.kin
 
 // Integral of the bound over the ray: how many tentative collisions it has in the mean.
 float bound_column(CloudBody body, CloudRay ray, Spans spans) {
+  if (body.kind != kCloudGrid) return body.extinction_per_km * body.largest_density * spans_length(spans);
   float sum = 0.0;
   float t = 0.0;
   for (int i = 0; i < 2000 && t < ray.end_km; i++) {
@@ -109,9 +110,22 @@ float real_share(CloudBody body, CloudRay ray, float ground_radius_km, float t_k
   return body.extinction_per_km * cloud_density(body, ground_radius_km, point, detail, kGridExact) / max(bound_per_km, 1.0e-30);
 }
 
+// The collision at this optical depth of a homogeneous body: no loop.
+CloudFlight flight_to_depth(CloudBody body, int number, Spans spans, float depth, CloudFlight flight) {
+  float length_km = depth / body.extinction_per_km;
+  float first_km = span_length(spans.first);
+  float t = length_km < first_km ? spans.first.x + length_km : spans.second.x + (length_km - first_km);
+  if (length_km >= spans_length(spans) || t >= flight.t_km) return flight;
+  flight.collided = true;
+  flight.t_km = t;
+  flight.body = number;
+  return flight;
+}
+
 // The first real collision with one body, before flight.t_km. `depth`: optical depth of the bound to the first tentative one.
 CloudFlight flight_in_body(CloudBody body, int number, CloudRay ray, Spans spans, float ground_radius_km, float depth, int detail,
                            CloudFlight flight) {
+  if (is_homogeneous(body)) return flight_to_depth(body, number, spans, depth, flight);
   float t = 0.0;
   for (int i = 0; i < 60000; i++) {
     if (t >= flight.t_km) return flight;
@@ -125,7 +139,7 @@ CloudFlight flight_in_body(CloudBody body, int number, CloudRay ray, Spans spans
     }
     t += depth / bound.per_km;
     flight.random = draw(flight.random);
-    if (is_homogeneous(body) || flight.random.value.x < real_share(body, ray, ground_radius_km, t, bound.per_km, detail)) {
+    if (flight.random.value.x < real_share(body, ray, ground_radius_km, t, bound.per_km, detail)) {
       flight.collided = true;
       flight.t_km = t;
       flight.body = number;

@@ -4,9 +4,11 @@
 //
 // Every collision gives the sunlight that is scattered there (next-event estimation), with the phase function's value between
 // the path's direction and the sun. Where that function is sharp, a rare path that flies nearly towards the sun brings a
-// hundred times the mean. So a second way to the same next collision is drawn: a side ray from the lobe round the sun. The
-// balance heuristic (Veach 1997) weighs both; with p the density of the path's own turn and q s that of side rays, both give
-//   p s / (p + q s)    where p alone gave s, the phase function towards the sun.
+// hundred times the mean. So a second way to the same next collision is drawn: a side ray from the lobe round the sun, which
+// also meets a bound for certain. The balance heuristic (Veach 1997) weighs both. With p the density of the path's own turn, s
+// that of the side ray's (the phase function towards the sun), q side rays a collision, and m the probability by nature that a
+// bound is met in that direction, both ways give
+//   p s / (p + q s / m)    where p alone gave s.
 //
 // The including file gives cloud_flight.glsl's functions and CLOUD_ENVIRONMENT (const bool): light of radiance 1 from outside
 // in place of the sun, as in a white furnace.
@@ -67,14 +69,14 @@ SunAt side_ray(CloudPathSettings settings, int body, CloudPoint point, vec3 dire
   drawn.random = draw(drawn.random);
   vec3 to = turned(settings.sun, drawn.turn, drawn.random.value.x);
   CloudRay ray = cloud_ray_from(point, clouds.ground_radius_km, to);
-  CloudFlight flight = next_collision(ray, settings.detail, drawn.random);
+  CloudFlight flight = forced_collision(ray, settings.detail, drawn.random);
   side.random = flight.random;
   side.finished = flight.finished;
   if (!flight.collided) return side;
   float p = cloud_phase(phase, one_minus_cosine(direction, to), one_minus_cosine(direction, to * -1.0));
   float s = cloud_phase(phase, drawn.turn.one_minus_nu, drawn.turn.one_plus_nu);
   SunAt sun = sun_scattered_at(settings, flight.body, point_along(ray, clouds.ground_radius_km, flight.t_km), to, flight.random);
-  side.value = sun.value * p / (p + settings.side_rays * s);
+  side.value = sun.value * p / (p + settings.side_rays * s / flight.met);
   side.finished = sun.finished;
   side.random = sun.random;
   return side;
@@ -118,13 +120,13 @@ CloudPath at_cloud_collision(CloudPathSettings settings, CloudPath path, CloudFl
   CloudTurn drawn = cloud_turn(phase, path.random);
   path.random = drawn.random;
   vec3 to = turned(path.ray.direction, drawn.turn, around);
+  path.ray = cloud_ray_from(point, clouds.ground_radius_km, to);
   path.own = 1.0;
   if (!CLOUD_ENVIRONMENT && settings.side_rays > 0.0) {
     float p = cloud_phase(phase, drawn.turn.one_minus_nu, drawn.turn.one_plus_nu);
     float s = cloud_phase(phase, one_minus_cosine(to, settings.sun), one_minus_cosine(to, settings.sun * -1.0));
-    path.own = p / (p + settings.side_rays * s);
+    path.own = p / (p + settings.side_rays * s / max(met_by_nature(path.ray), 1.0e-30));
   }
-  path.ray = cloud_ray_from(point, clouds.ground_radius_km, to);
   return path;
 }
 

@@ -46,14 +46,25 @@ CloudFlight next_collision(CloudRay ray, int detail, Random random) {
 // [/next_collision]
 
 // [forced_collision]
+// Mean number of tentative collisions on a ray, of all bodies, and the probability that there is one at least.
+float all_bounds(CloudRay ray) {
+  float sum = 0.0;
+  for (int i = 0; i < clouds.count; i++)
+    sum += bound_column(clouds.bodies[i], ray, body_spans(clouds.bodies[i], clouds.ground_radius_km, ray));
+  return sum;
+}
+
+float met_by_nature(CloudRay ray) {
+  float bounds = all_bounds(ray);
+  return bounds * mean_exponential(bounds);
+}
+
 // A flight that meets the bound of some body at least once. The probability of that by nature is flight.met, the weight of
 // all that comes of it. In the order of the bodies each meets its bound with the probability it has given that those before it
 // did not, and that one of all does.
 CloudFlight forced_collision(CloudRay ray, int detail, Random random) {
   CloudFlight flight = flight_before(ray, random);
-  float left = 0.0;
-  for (int i = 0; i < clouds.count; i++)
-    left += bound_column(clouds.bodies[i], ray, body_spans(clouds.bodies[i], clouds.ground_radius_km, ray));
+  float left = all_bounds(ray);
   flight.met = left * mean_exponential(left);
   if (flight.met <= 0.0) return flight;
   bool forced = true;

@@ -53,9 +53,9 @@ CloudRow grid_row(const CsvTable& table, size_t i) {
   item.g = static_cast<float>(at("g1")), item.alpha = static_cast<float>(at("alpha1"));
   item.second_g = static_cast<float>(at("g2")), item.second_alpha = static_cast<float>(at("alpha2"));
   item.weight = static_cast<float>(at("w1"));
-  const double x = at("ox"), y = at("oy"), z = at("oz") + kBoxUp_km;
+  const double x = at("ox"), y = at("oy"), z = at("oz");
   item.origin_km = floats(x, y, z), item.direction = unit(at("dx"), at("dy"), at("dz"));
-  item.altitude_km = static_cast<float>(altitude_of(x, y, z, 6360.0));
+  item.altitude_km = static_cast<float>(altitude_of(x, y, z + kBoxUp_km, 6360.0));
   const double zenith = at("sun_zenith_deg") * kDegree, azimuth = at("sun_azimuth_deg") * kDegree;
   item.sun = unit(std::sin(zenith) * std::cos(azimuth), std::sin(zenith) * std::sin(azimuth), std::cos(zenith));
   item.place_km = floats(0.0, 0.0, kBoxUp_km);
@@ -76,7 +76,7 @@ CloudRow slab_row(const CsvTable& table, size_t i) {
                sine = std::sqrt(1.0 - mu * mu);
   item.sun = unit(std::sqrt(1.0 - mu_sun * mu_sun), 0.0, mu_sun);
   item.direction = unit(sine * std::cos(azimuth), sine * std::sin(azimuth), -mu);
-  item.base_km = 1.0f, item.top_or_radius_km = 2.0f, item.ground_radius_km = 1e6f;
+  item.base_km = 1.0f, item.top_or_radius_km = 2.0f, item.ground_radius_km = 3e7f;
   item.altitude_km = mu > 0.0 ? 2.0f : 1.0f;
   item.origin_km = floats(0.0, 0.0, item.altitude_km);
   item.mu = static_cast<float>(-mu), item.sine = static_cast<float>(sine);
@@ -96,7 +96,7 @@ CloudRow sphere_row(const CsvTable& table, size_t i) {
   const double angle = at("view_sun_angle_deg") * kDegree, u = at("u"), v = at("v");
   item.sun = unit(std::cos(angle), 0.0, std::sin(angle));
   item.direction = floats(1.0, 0.0, 0.0);
-  item.origin_km = floats(-1.5, v, u + kBoxUp_km);
+  item.origin_km = floats(-1.5, v, u);
   item.altitude_km = static_cast<float>(altitude_of(-1.5, v, u + kBoxUp_km, 6360.0));
   item.place_km = floats(0.0, 0.0, kBoxUp_km), item.top_or_radius_km = 1.0f, item.ceiling_km = 1000.0f;
   read_orders(row, table, i, "L1");

@@ -12,7 +12,7 @@ struct CloudItem {
   float kind = 0.0f;  // of interop/cloud.h
   float extinction_per_km = 1.0f, albedo = 1.0f;
   float g = 0.85f, alpha = 0.0f, second_g = 0.0f, second_alpha = 0.0f, weight = 1.0f;
-  std::array<float, 3> origin_km{}, direction{}, sun{};
+  std::array<float, 3> origin_km{}, direction{}, sun{};  // origin: from place_km
   float base_km = 0.0f, top_or_radius_km = 0.0f;
   std::array<float, 3> place_km{};
   float altitude_km = 0.0f, ground_radius_km = 6360.0f, ceiling_km = 100.0f;

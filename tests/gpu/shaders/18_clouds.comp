@@ -86,7 +86,8 @@ void main() {
   clouds.bodies[0] = body;
   clouds.ground_radius_km = in_at(item, 23);
   clouds.ceiling_km = in_at(item, 24);
-  const CloudPoint eye = CloudPoint(three(item, 8), vec3(0.0), in_at(item, 22));
+  // From the body's place: two floats know a point better than one.
+  const CloudPoint eye = CloudPoint(body.place_km, three(item, 8), in_at(item, 22));
   CloudRay ray = cloud_ray_from(eye, clouds.ground_radius_km, three(item, 11));
   if (in_at(item, 25) > -2.0) {  // the cosine of zenith, where the test has it in double
     ray.mu = in_at(item, 25);
@@ -99,7 +100,7 @@ void main() {
   settings.orders = int(in_at(item, 28));
   settings.detail = kWithCurledDetail;
   settings.side_rays = in_at(item, 27);
-  settings.ground_albedo = 0.0;
+  settings.ground_albedo = CLOUD_ENVIRONMENT ? 1.0 : 0.0;  // black; white in a white furnace
   settings.sun = three(item, 14);
   float sum = 0.0, squares = 0.0, vertices = 0.0;
   uint finished = 0u;  // a software driver ends every loop of an invocation after 65,535 turns of all of them
