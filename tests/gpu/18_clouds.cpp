@@ -225,4 +225,44 @@ std::vector<CloudLight> trace_clouds(const std::vector<CloudItem>& items, const 
   return lights;
 }
 
+namespace {
+
+std::vector<double> evaluate_clouds(const std::vector<CloudItem>& items, const std::vector<float>& grid,
+                                    uint32_t method) {
+  std::vector<float> inputs(items.size() * 32);
+  std::memcpy(inputs.data(), items.data(), inputs.size() * sizeof(float));
+  const uint32_t kinds = grid.size() > 100 ? 13u : 5u;
+  const std::vector<float> out = evaluate("tests/18_clouds.comp", inputs, 32, 4, {method, 0u, kinds}, grid);
+  std::vector<double> lights;
+  for (size_t i = 0; i < items.size(); ++i) lights.push_back(out[4 * i]);
+  return lights;
+}
+
+}  // namespace
+
+std::vector<double> march_clouds(const std::vector<CloudItem>& items, const std::vector<float>& grid,
+                                 const CloudMarching& marching) {
+  std::vector<CloudItem> all = items;
+  for (CloudItem& item : all) {
+    item.side_rays = static_cast<float>(marching.orders), item.orders = static_cast<float>(marching.octaves);
+    item.samples = static_cast<float>(marching.steps), item.path = static_cast<float>(marching.light_samples);
+    item.seed = static_cast<float>(100 * marching.refresh + 10 * marching.escape_directions + marching.escape_samples);
+  }
+  return evaluate_clouds(all, grid, 1);
+}
+
+std::vector<double> first_orders(const std::vector<CloudItem>& items, const std::vector<float>& grid) {
+  constexpr int kParts = 32;
+  std::vector<CloudItem> parts;
+  for (CloudItem item : items)
+    for (int part = 0; part < kParts; ++part) {
+      item.path = static_cast<float>(part), item.seed = kParts;
+      parts.push_back(item);
+    }
+  const std::vector<double> lights = evaluate_clouds(parts, grid, 2);
+  std::vector<double> sums(items.size(), 0.0);
+  for (size_t i = 0; i < lights.size(); ++i) sums[i / kParts] += lights[i];
+  return sums;
+}
+
 }  // namespace welkin::test

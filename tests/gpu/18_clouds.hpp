@@ -42,4 +42,15 @@ struct CloudLight {
 std::vector<CloudLight> trace_clouds(const std::vector<CloudItem>& items, const std::vector<float>& grid, int batches,
                                      bool environment = false);
 
+// The march of chapter 18 along rays, its shader's settings. Orders: 0 none but the first, 1 octaves, 2 escape.
+struct CloudMarching {
+  int orders = 0, octaves = 1, steps = 64, light_samples = 6, escape_samples = 3, escape_directions = 4,
+      refresh = 20;  // refresh in hundredths
+};
+std::vector<double> march_clouds(const std::vector<CloudItem>& items, const std::vector<float>& grid,
+                                 const CloudMarching& marching);
+
+// Order 1, converged.
+std::vector<double> first_orders(const std::vector<CloudItem>& items, const std::vector<float>& grid);
+
 }  // namespace welkin::test

@@ -3,9 +3,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
-layout(constant_id = 0) const int METHOD = 0;  // 0: paths
+layout(constant_id = 0) const int METHOD = 0;  // 0: paths, 1: march, 2: order 1, converged
 layout(constant_id = 1) const bool CLOUD_ENVIRONMENT = false;
-layout(constant_id = 2) const int CLOUD_KINDS = 13;
+layout(constant_id = 2) const int CLOUD_KINDS = 13;  // layers and balls alone, or also a grid
 const bool HAS_RAYLEIGH = false;
 const bool HAS_MIE = false;
 const bool HAS_OZONE = false;
@@ -55,7 +55,13 @@ vec4 weather_texel(vec2 uv) { return vec4(0.0); }
 vec4 base_noise(vec3 uvw) { return vec4(0.0); }
 vec4 detail_noise(vec3 uvw) { return vec4(0.0); }
 vec4 curl_noise(vec2 uv) { return vec4(0.0); }
+#include "17_cloud_shapes/optical_depth.glsl"
+
+// As block.glsl of chapter 17 has it.
+float cloud_optical_depth(CloudRay ray, CloudMarch march) { return body_optical_depth(clouds.bodies[0], clouds.ground_radius_km, ray, march); }
+#include "18_cloud_light/cloud_march.glsl"
 #include "18_cloud_light/cloud_path.glsl"
+#include "18_cloud_light/first_order.glsl"
 
 float in_at(uint item, int k) { return inputs[32 * item + k]; }
 vec3 three(uint item, int k) { return vec3(in_at(item, k), in_at(item, k + 1), in_at(item, k + 2)); }
@@ -95,6 +101,30 @@ void main() {
     ray.end_km = ground_end(clouds.ground_radius_km, eye.altitude_km, ray.mu, ray.sine);
   }
   ray = below_ceiling(clouds.ground_radius_km, clouds.ceiling_km, ray);
+  if (METHOD == 2) {
+    outputs[4 * item] = first_order_of_clouds(ray, three(item, 14), CloudMarch(128, kWithCurledDetail, kGridExact, 1, 0.5), RayPart(int(in_at(item, 30)), int(in_at(item, 31))));
+    return;
+  }
+  if (METHOD == 1) {  // samples: steps; side rays: which orders; path: samples to the sun; seed: escape samples; orders: octaves
+    CloudMarchSettings march;
+    march.sun = three(item, 14);
+    march.steps = int(in_at(item, 29));
+    march.light_samples = int(in_at(item, 30));
+    march.escape_samples = int(in_at(item, 31)) % 10;
+    march.escape_directions = int(in_at(item, 31)) / 10 % 10;
+    march.escape_refresh = float(int(in_at(item, 31)) / 100) / 100.0;
+    march.method = int(in_at(item, 27));
+    march.octaves = Octaves(int(in_at(item, 28)), 0.5, 0.5, 0.5);
+    march.powder = 0.0;
+    march.detail = kWithCurledDetail;
+    march.grid_method = kGridFiltered;
+    const CloudLight light = march_cloud_light(ray, march);
+    outputs[4 * item] = light.radiance;
+    outputs[4 * item + 1] = light.tau;
+    outputs[4 * item + 2] = light.stopped;
+    outputs[4 * item + 3] = 0.0;
+    return;
+  }
   const int samples = int(in_at(item, 29));
   CloudPathSettings settings;
   settings.orders = int(in_at(item, 28));

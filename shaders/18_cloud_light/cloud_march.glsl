@@ -1,0 +1,177 @@
+// Light of clouds along a ray by marching: single scattering, and what stands in for the orders above it. Pure functions; km.
+// Radiance for the sun's irradiance 1.
+//
+// A step gives (extinction sigma, optical depth across tau, before it T):  S/sigma T (1 - e^-tau), whatever its length.
+// Steps tile the ray's spans in all bodies together; bodies that overlap add up.
+//
+// The including file gives what cloud_scene.glsl wants.
+#ifndef WELKIN_CLOUD_MARCH_GLSL
+#define WELKIN_CLOUD_MARCH_GLSL
+
+#include "18_cloud_light/cloud_scene.glsl"
+#include "18_cloud_light/higher_orders.glsl"
+#include "18_cloud_light/in_scatter.glsl"
+
+// What stands in for higher orders: knob cloud.orders.
+const int kOrdersNone = 0;
+const int kOrdersOctaves = 1;
+const int kOrdersEscape = 2;
+
+// [settings]
+struct CloudMarchSettings {
+  vec3 sun;            // unit, global frame
+  int steps;           // along the view, in all
+  int light_samples;   // to the sun, of a grid or noise
+  int escape_directions;  // 4: a tetrahedron; 2: up and down
+  int escape_samples;     // in each
+  float escape_refresh;   // how far the optical depth k tau may run on with what was found
+  int method;          // kOrders...
+  Octaves octaves;
+  float powder;        // strength; 0: none
+  int detail;          // of noise, along the view; light marches take its shape alone
+  int grid_method;
+};
+// [/settings]
+
+// [light_depth]
+// Optical depth from a point in a direction. Of a homogeneous body exactly; of others by samples which thin out with the
+// distance: sample i stands for the way from L (i/n)^2 to L ((i+1)/n)^2.
+float light_depth(CloudPoint point, vec3 direction, int samples, CloudMarchSettings settings) {
+  CloudRay ray = cloud_ray_from(point, clouds.ground_radius_km, direction);
+  float tau = 0.0;
+  for (int i = 0; i < clouds.count; i++) {
+    Spans spans = body_spans(clouds.bodies[i], clouds.ground_radius_km, ray);
+    float length_km = spans_length(spans);
+    if (length_km <= 0.0) continue;
+    if (is_homogeneous(clouds.bodies[i])) {
+      tau += clouds.bodies[i].extinction_per_km * length_km;
+      continue;
+    }
+    float first_km = span_length(spans.first);
+    float sum = 0.0;
+    for (int n = 0; n < samples; n++) {
+      float low = float(n) / float(samples);
+      float high = float(n + 1) / float(samples);
+      float at = 0.5 * length_km * (low * low + high * high);
+      float t = at < first_km ? spans.first.x + at : spans.second.x + (at - first_km);
+      CloudPoint sample_point = point_along(ray, clouds.ground_radius_km, t);
+      sum += cloud_density(clouds.bodies[i], clouds.ground_radius_km, sample_point, kShapeOnly, settings.grid_method) * (high * high - low * low);
+    }
+    tau += clouds.bodies[i].extinction_per_km * length_km * sum;
+  }
+  return tau;
+}
+
+// Mean escape chance over a few directions. The black ground takes what it meets: that is a way out, too.
+float mean_escape(CloudPoint point, float apart, CloudMarchSettings settings) {
+  float sum = 0.0;
+  for (int i = 0; i < settings.escape_directions; i++) {
+    vec3 direction = escape_direction(i);
+    if (settings.escape_directions == 2) direction = vec3(0.0, 0.0, i == 0 ? 1.0 : -1.0);
+    sum += escape_chance(light_depth(point, direction, settings.escape_samples, settings), apart);
+  }
+  return sum / float(settings.escape_directions);
+}
+// [/light_depth]
+
+// [hull]
+// Where any body is: hulls of all first and of all second spans.
+Spans hull_of_spans(CloudRay ray) {
+  Spans hull;
+  hull.first = vec2(kNoEnd_km, 0.0);
+  hull.second = hull.first;
+  for (int i = 0; i < clouds.count; i++) {
+    Spans spans = body_spans(clouds.bodies[i], clouds.ground_radius_km, ray);
+    if (span_length(spans.first) > 0.0) hull.first = vec2(min(hull.first.x, spans.first.x), max(hull.first.y, spans.first.y));
+    if (span_length(spans.second) > 0.0) hull.second = vec2(min(hull.second.x, spans.second.x), max(hull.second.y, spans.second.y));
+  }
+  hull.second.x = max(hull.second.x, hull.first.y);
+  return hull;
+}
+// [/hull]
+
+// [cloud_light]
+struct CloudLight {
+  float radiance;
+  float tau;          // of the ray
+  float stopped_at_km;  // mean distance, weighted by where light stops
+  float stopped;
+};
+
+// Steps grow with their number where all bodies are homogeneous: the light of a thick one comes from its first optical depths.
+float step_edge(int i, int steps, bool grows) {
+  float share = float(i) / float(steps);
+  return grows ? share * share : share;
+}
+
+CloudLight march_cloud_light(CloudRay ray, CloudMarchSettings settings) {
+  CloudLight light = CloudLight(0.0, 0.0, 0.0, 0.0);
+  Spans hull = hull_of_spans(ray);
+  bool grows = (CLOUD_KINDS & (kCloudGrid + kCloudNoise)) == 0;
+  float nu_minus = one_minus_cosine(ray.direction, settings.sun);
+  float nu_plus = one_minus_cosine(ray.direction, settings.sun * -1.0);
+  float total_km = spans_length(hull);
+  if (total_km <= 0.0) return light;
+  if (grows) total_km = min(total_km, 60.0 / clouds.bodies[0].extinction_per_km);
+  float first_km = span_length(hull.first);
+  // One phase function a ray: that of the first body met. What differs from it is a few percent of the light of overlaps.
+  int last_body = -1;
+  HigherOrders orders = higher_orders(body_phase(0), 1.0, nu_minus, nu_plus);
+  CloudPhase phase = body_phase(0);
+  float escape = 1.0;
+  float refreshed = -1.0e9;
+  int stride = 1;
+  for (int n = 0; n < settings.steps; n += stride) {
+    // Behind four optical depths only diffuse light is left, which changes slowly.
+    stride = light.tau > 4.0 ? 4 : 1;
+    float low = total_km * step_edge(n, settings.steps, grows);
+    float high = total_km * step_edge(min(n + stride, settings.steps), settings.steps, grows);
+    float at = 0.5 * (low + high);
+    float t = at < first_km ? hull.first.x + at : hull.second.x + (at - first_km);
+    CloudPoint point = point_along(ray, clouds.ground_radius_km, t);
+    float extinction = 0.0;
+    float scattering = 0.0;
+    int body = 0;
+    float most = 0.0;
+    for (int i = 0; i < clouds.count; i++) {
+      float one = clouds.bodies[i].extinction_per_km * cloud_density(clouds.bodies[i], clouds.ground_radius_km, point, settings.detail, settings.grid_method);
+      extinction += one;
+      scattering += one * clouds.bodies[i].single_scattering_albedo;
+      if (one > most) {
+        most = one;
+        body = i;
+      }
+    }
+    float across = extinction * (high - low);
+    if (across <= 0.0) continue;
+    if (body != last_body) {
+      phase = body_phase(body);
+      orders = higher_orders(phase, scattering / extinction, nu_minus, nu_plus);
+      last_body = body;
+    }
+    bool dark = cloud_ray_from(point, clouds.ground_radius_km, settings.sun).end_km < kNoEnd_km;
+    float tau_sun = dark ? 1.0e4 : light_depth(point, settings.sun, light.tau > 4.0 ? (settings.light_samples + 1) / 2 : settings.light_samples, settings);
+    float stops = step_weight(1.0, light.tau, across);
+    float source = 0.0;
+    if (settings.method == kOrdersOctaves) source = octave_sum(phase, settings.octaves, tau_sun, nu_minus, nu_plus);
+    else source = cloud_phase(phase, nu_minus, nu_plus) * exp(-tau_sun);
+    light.radiance += scattering / extinction * source * stops * powder(tau_sun, settings.powder);
+    if (settings.method == kOrdersEscape && !dark) {
+      if (orders.apart * (light.tau + across - refreshed) > settings.escape_refresh) {
+        escape = mean_escape(point, orders.apart, settings);
+        refreshed = light.tau;
+      }
+      light.radiance += higher_orders_of_step(orders, light.tau, across, tau_sun, escape);
+    }
+    light.tau += across;
+    light.stopped += stops;
+    light.stopped_at_km += stops * t;
+    // Diffuse light of a thick cloud still comes from 1 / apart optical depths behind.
+    float left = settings.method == kOrdersEscape ? orders.apart * light.tau : light.tau;
+    if (left > 5.0) break;
+  }
+  return light;
+}
+// [/cloud_light]
+
+#endif
