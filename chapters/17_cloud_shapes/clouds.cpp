@@ -193,10 +193,11 @@ app::Effect clouds() {
     interop::CloudBlock block = make_cloud_block(offered.bodies, context.scene.planet);
     offered.kinds = kinds_of(offered.bodies), offered.ceiling_km = block.ceiling_km;
     offered.constants = {{"CLOUD_KINDS", offered.kinds}};
-    const auto nothing = [&](bool is_3d) {
+    const auto nothing = [&](bool is_3d) {  // a volume of one slice could not be told from a map
+      const uint32_t slices = is_3d ? 2 : 1;
       return builder.graph.add_filled(
           is_3d ? "no volume" : "no map",
-          upload(device, "nothing", VK_FORMAT_R32_SFLOAT, {1, 1, 1}, std::vector<float>{0.0f}, is_3d));
+          upload(device, "nothing", VK_FORMAT_R32_SFLOAT, {1, 1, slices}, std::vector<float>(slices, 0.0f), is_3d));
     };
     const bool noise = has_noise(offered.bodies), grid = (offered.kinds & interop::kCloudGrid) != 0;
     const graph::Resource no_volume = !noise || !grid ? nothing(true) : 0, no_map = noise ? 0 : nothing(false);
