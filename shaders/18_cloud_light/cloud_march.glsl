@@ -20,7 +20,8 @@ const int kOrdersEscape = 2;
 // [settings]
 struct CloudMarchSettings {
   vec3 sun;            // unit, global frame
-  int steps;           // along the view, in all
+  int steps;           // along the view, across a body's thickness; 8 times as many at most
+  float offset;        // where in its step a sample lies: 0.5 unless a pixel moves it
   int light_samples;   // to the sun, of a grid or noise
   int escape_directions;  // 4: a tetrahedron; 2: up and down
   int escape_samples;     // in each
@@ -98,6 +99,18 @@ struct CloudLight {
   float stopped;
 };
 
+// Number of steps of a march: as many across the thinnest body on the ray as are asked for.
+int view_steps(CloudRay ray, float length_km, int steps) {
+  float thin_km = length_km;
+  for (int i = 0; i < clouds.count; i++) {
+    if (is_homogeneous(clouds.bodies[i]) || spans_length(body_spans(clouds.bodies[i], clouds.ground_radius_km, ray)) <= 0.0) continue;
+    vec3 size = clouds.bodies[i].axis;
+    float across_km = clouds.bodies[i].kind == kCloudGrid ? min(min(size.x, size.y), size.z) : clouds.bodies[i].top_km - clouds.bodies[i].base_km;
+    thin_km = min(thin_km, across_km);
+  }
+  return int(clamp(ceil(float(steps) * length_km / max(thin_km, 1.0e-6)), 1.0, 8.0 * float(steps)));
+}
+
 // Steps grow with their number where all bodies are homogeneous: the light of a thick one comes from its first optical depths.
 float step_edge(int i, int steps, bool grows) {
   float share = float(i) / float(steps);
@@ -118,15 +131,16 @@ CloudLight march_cloud_light(CloudRay ray, CloudMarchSettings settings) {
   int last_body = -1;
   HigherOrders orders = higher_orders(body_phase(0), 1.0, nu_minus, nu_plus);
   CloudPhase phase = body_phase(0);
+  int steps = view_steps(ray, total_km, settings.steps);
   float escape = 1.0;
   float refreshed = -1.0e9;
   int stride = 1;
-  for (int n = 0; n < settings.steps; n += stride) {
+  for (int n = 0; n < steps; n += stride) {
     // Behind four optical depths only diffuse light is left, which changes slowly.
     stride = light.tau > 4.0 ? 4 : 1;
-    float low = total_km * step_edge(n, settings.steps, grows);
-    float high = total_km * step_edge(min(n + stride, settings.steps), settings.steps, grows);
-    float at = 0.5 * (low + high);
+    float low = total_km * step_edge(n, steps, grows);
+    float high = total_km * step_edge(min(n + stride, steps), steps, grows);
+    float at = low + settings.offset * (high - low);
     float t = at < first_km ? hull.first.x + at : hull.second.x + (at - first_km);
     CloudPoint point = point_along(ray, clouds.ground_radius_km, t);
     float extinction = 0.0;

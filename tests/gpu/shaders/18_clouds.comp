@@ -109,6 +109,7 @@ void main() {
     CloudMarchSettings march;
     march.sun = three(item, 14);
     march.steps = int(in_at(item, 29));
+    march.offset = 0.5;
     march.light_samples = int(in_at(item, 30));
     march.escape_samples = int(in_at(item, 31)) % 10;
     march.escape_directions = int(in_at(item, 31)) / 10 % 10;
