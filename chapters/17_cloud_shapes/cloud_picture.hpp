@@ -15,7 +15,7 @@ app::Effect cloud_picture();
 // A ray of --probe as shaders read it, in split precision, from where it comes down to the clouds: found in double. The
 // fourth components: altitude, cosine and sine to the vertical.
 struct CloudRayItem {
-  glm::vec4 origin, rest, direction;
+  glm::vec4 origin, rest, direction, end;
 };
 CloudRayItem cloud_ray_item(const app::ProbeRay& ray, double ground_radius_km, double ceiling_km);
 

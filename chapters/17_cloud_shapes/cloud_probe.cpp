@@ -60,15 +60,24 @@ CloudRayItem cloud_ray_item(const app::ProbeRay& ray, double ground_radius_km, d
   const glm::dvec3 from_centre = position + glm::dvec3(0.0, 0.0, ground_radius_km);
   const double r = glm::length(from_centre), along = glm::dot(from_centre, ray.direction);
   const double closest = glm::length(glm::cross(from_centre, ray.direction)), top_km = ground_radius_km + ceiling_km;
-  double mu = along / r, sine = closest / r;
+  double mu = along / r, sine = closest / r, before_km = 0.0;
   if (altitude_km > ceiling_km && along < 0.0 && closest < top_km) {
     const double root = std::sqrt((top_km - closest) * (top_km + closest));
-    const double enters_km = (altitude_km - ceiling_km) * (r + top_km) / (root - along);
-    position += ray.direction * enters_km;
-    altitude_km = ceiling_km, mu = -root / top_km, sine = closest / top_km;
+    before_km = (altitude_km - ceiling_km) * (r + top_km) / (root - along);
+    position += ray.direction * before_km;
+    mu = -root / top_km, sine = closest / top_km;
   }
+  // Whether a ray that grazes the ground meets it, floats cannot say: from 36,000 km they know its tangent point to 2
+  // m.
+  double end_km = 1e9;
+  if (along < 0.0 && closest < ground_radius_km + 1e-9) {  // one that touches it, as double has it, meets it
+    const double root = std::sqrt(std::max((ground_radius_km - closest) * (ground_radius_km + closest), 0.0));
+    end_km = altitude_km * (r + ground_radius_km) / (root - along) - before_km;
+  }
+  if (before_km > 0.0) altitude_km = ceiling_km;
   const glm::vec3 origin(position);
-  return {glm::vec4(origin, altitude_km), glm::vec4(position - glm::dvec3(origin), mu), glm::vec4(ray.direction, sine)};
+  return {glm::vec4(origin, altitude_km), glm::vec4(position - glm::dvec3(origin), mu), glm::vec4(ray.direction, sine),
+          glm::vec4(std::max(end_km, 0.0), 0.0, 0.0, 0.0)};
 }
 // [/item]
 

@@ -20,7 +20,7 @@ int main(int argc, char** argv) {
       .try_next = "./welkin run 17 --scene fair --set cloud.show=side   (or: --set weather.preset=storm)",
       .sky = true,
       .images = {"sky_view", "transmittance"},
-      .reference = {{"cloud.steps", "512"}, {"cloud.detail", "full"}, {"cloud.grid", "exact"}, {"cloud.jitter", "off"}},
+      .reference = {{"cloud.steps", "256"}, {"cloud.detail", "full"}, {"cloud.grid", "exact"}, {"cloud.jitter", "off"}},
       .default_scene = "fair",
       .standard_views = {{"fair", "horizon"}, {"fair", "above"}, {"overcast", "horizon"}, {"storm", "horizon"}},
       .window = open_window_system,

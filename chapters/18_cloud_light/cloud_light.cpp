@@ -139,18 +139,18 @@ std::vector<Knob> cloud_light_knobs() {
 CloudLightPush cloud_light_push(const Settings& settings) {
   const auto number = [&](const char* name) { return static_cast<float>(settings.number(name)); };
   CloudLightPush push{.columns = cloud_march(settings),
-                 .view_steps = settings.integer("cloud.view_steps"),
-                 .light_samples = settings.integer("cloud.light_samples"),
-                 .escape_directions = settings.choice("cloud.escape_directions") == "2" ? 2 : 4,
-                 .escape_samples = settings.integer("cloud.escape_samples"),
-                 .method = settings.integer("cloud.orders"),
-                 .octaves = settings.integer("cloud.octaves"),
-                 .unused = {},
-                 .octave_a = number("cloud.octave_a"),
-                 .octave_b = number("cloud.octave_b"),
-                 .octave_c = number("cloud.octave_c"),
-                 .powder = number("cloud.powder"),
-                 .sun = glm::vec4(0.0f, 0.0f, 1.0f, number("cloud.escape_refresh"))};
+                      .view_steps = settings.integer("cloud.view_steps"),
+                      .light_samples = settings.integer("cloud.light_samples"),
+                      .escape_directions = settings.choice("cloud.escape_directions") == "2" ? 2 : 4,
+                      .escape_samples = settings.integer("cloud.escape_samples"),
+                      .method = settings.integer("cloud.orders"),
+                      .octaves = settings.integer("cloud.octaves"),
+                      .unused = {},
+                      .octave_a = number("cloud.octave_a"),
+                      .octave_b = number("cloud.octave_b"),
+                      .octave_c = number("cloud.octave_c"),
+                      .powder = number("cloud.powder"),
+                      .sun = glm::vec4(0.0f, 0.0f, 1.0f, number("cloud.escape_refresh"))};
   if (settings.integer("orders") == 1) push.method = 0;
   return push;
 }

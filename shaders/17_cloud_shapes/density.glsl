@@ -5,7 +5,7 @@
 //   float grid_texel(int i, int j, int k)   a corner's sample            float grid_filtered(vec3 texel)   the hardware's filter
 //   vec4 weather_texel(vec2 uv)             vec4 base_noise(vec3 uvw)    vec4 detail_noise(vec3 uvw)        vec4 curl_noise(vec2 uv)
 //
-//   noise:  shape    s = above(perlin-worley, 0.3 (1 - fBm of worley)),  times the type's profile over the height
+//   noise:  shape    s = above(perlin-worley, 1 - fBm of worley),  times the type's profile over the height
 //           cover    d = above(s, threshold of the coverage there)
 //           erosion  above(d, a part of the detail): wisps at the base, billows above
 #ifndef WELKIN_CLOUD_DENSITY_GLSL
@@ -62,8 +62,9 @@ vec4 weather_at(CloudBody body, vec2 way_km) {
   vec2 uv = vec2(place.x / body.extent_km + 0.5 + body.shift_x, 0.5 - place.y / body.extent_km + body.shift_y);
   vec4 weather = weather_texel(uv);
   if (body.painted > 0.5) return weather;
+  weather.x = above(weather.x, 0.6) * 1.1;  // half of the map lies above 0.8: spread out
   vec2 wide = vec2(0.8 * uv.x - 0.6 * uv.y, 0.6 * uv.x + 0.8 * uv.y) * 0.381966;
-  weather.x = clamp(weather.x + 0.6 * (weather_texel(wide).x - 0.5), 0.0, 1.0);
+  weather.x = clamp(weather.x + 0.5 * (above(weather_texel(wide).x, 0.6) - 0.5), 0.0, 1.0);
   return weather;
 }
 
@@ -96,10 +97,11 @@ vec3 noise_place(CloudBody body, CloudPoint point) {
 // [/noise_space]
 
 // [shape]
-// 0 ... 1: lumps of the base texture, with what its finer octaves cut out of their sides.
+// 0 ... 1: lumps of the base texture, with what its finer octaves cut out of their sides. Nine tenths of the texture lie
+// between 0.45 and 0.88: spread out, so that a threshold of one half leaves about half.
 float base_shape(vec4 base) {
   float octaves = 0.625 * base.y + 0.25 * base.z + 0.125 * base.w;
-  return above(base.x, 0.3 * (1.0 - octaves));
+  return above(above(base.x, 0.4) * 1.25, clamp(1.3 * (0.92 - octaves), 0.0, 0.9));
 }
 
 // Of the shape, what the coverage leaves. The threshold falls from 1, where nothing is left, and of solid sheets below 0.
@@ -110,7 +112,7 @@ float covered(float shape, float coverage, float solid) {
 
 // Wisps at the base, where the detail itself is cut out, and billows above, where what lies between its lumps is.
 float eroded(float density, float detail, float height, float strength) {
-  float cut = mix(detail, 1.0 - detail, clamp(height * 10.0, 0.0, 1.0));
+  float cut = clamp(mix(detail, 1.0 - detail, clamp(height * 10.0, 0.0, 1.0)) * 1.6 - 0.16, 0.0, 1.0);
   return above(density, strength * cut);
 }
 // [/shape]
@@ -129,12 +131,12 @@ float noise_density(CloudBody body, float ground_radius_km, CloudPoint point, in
   vec3 place = noise_place(body, point);
   float density = covered(base_shape(base_noise(place)) * profile, coverage, type.solid * profile);
   if (detail != kShapeOnly && density > 0.0) {
-    vec3 fine = place * 8.0;
+    vec3 fine = place * 12.0;
     if (detail == kWithCurledDetail) {
       vec4 curl = curl_noise(vec2(place.x * 4.0, place.y * 4.0));
       fine += vec3(curl.x, curl.y, curl.z) * (0.4 * (1.0 - height));  // turbulence, strongest below
     }
-    density = eroded(density, detail_noise(fine).w, height, 0.35 * type.billows);
+    density = eroded(density, detail_noise(fine).w, height, 0.6 * type.billows);
   }
   // Droplets grow as air rises: less water at the base; and rain clouds hold more.
   return density * mix(0.5, 1.0, clamp(4.0 * height, 0.0, 1.0)) * (0.7 + 0.3 * weather.w);

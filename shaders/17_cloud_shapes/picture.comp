@@ -66,9 +66,9 @@ void main() {
   if (ray.end_km > 0.0)
     for (int i = 0; i < clouds.count; i++) all += painted(clouds.bodies[i], ray, march);
   const vec3 sky = imageLoad(behind, pixel).rgb;
-  const float share = 1.0 - exp(-all.x), height = all.z / max(all.y, 1.0e-6), distance_km = ray.begins_km + all.w / max(all.y, 1.0e-6);
-  // A stand-in for the air before a cloud, until chapter 19: towards the colour behind it, by 1/e after 80 km.
-  vec3 cloud = mix(sky, white.rgb * mix(0.3, 1.0, sqrt(clamp(height, 0.0, 1.0))), exp(-distance_km / 80.0));
+  const float share = 1.0 - exp(-all.x), height = all.z / max(all.y, 1.0e-6), distance_km = all.w / max(all.y, 1.0e-6);
+  // A stand-in for the air before a cloud, until chapter 19: towards the colour behind it, by 1/e after 80 km below the ceiling.
+  vec3 cloud = mix(sky, white.rgb * mix(0.25, 1.0, smoothstep(0.0, 0.45, height)), exp(-distance_km / 80.0));
   if (show_depth == 1) cloud = white.rgb * scale_colour(on_log_scale(all.x, 0.01, 4.0));
   imageStore(target, pixel, vec4(mix(sky, cloud, show_depth == 1 ? step(0.01, all.x) : share), 1.0));
 }

@@ -9,6 +9,7 @@ struct Ray {
   vec4 origin;     // w: altitude
   vec4 rest;       // w: cosine to the vertical
   vec4 direction;  // w: sine
+  vec4 end;        // x: distance to the ground
 };
 layout(binding = 6, std430) readonly buffer Rays {
   Ray rays[];
@@ -24,7 +25,6 @@ layout(push_constant) uniform Push {
 void main() {
   if (gl_GlobalInvocationID.x >= uint(count)) return;
   const Ray from = rays[gl_GlobalInvocationID.x];
-  const CloudRay ray = CloudRay(from.origin.xyz, from.rest.xyz, from.direction.xyz, from.origin.w, from.rest.w, from.direction.w, 0.0,
-                                ground_end(clouds.ground_radius_km, from.origin.w, from.rest.w, from.direction.w));
+  const CloudRay ray = CloudRay(from.origin.xyz, from.rest.xyz, from.direction.xyz, from.origin.w, from.rest.w, from.direction.w, 0.0, from.end.x);
   results[gl_GlobalInvocationID.x] = cloud_optical_depth(ray, CloudMarch(steps, detail, grid_method, grid_steps, 0.5));
 }

@@ -21,8 +21,8 @@ float above(float x, float threshold) {
 vec4 type_profile(int k) {
   if (k == 0) return vec4(0.00, 0.05, 0.14, 0.24);  // stratus: a low sheet
   if (k == 1) return vec4(0.02, 0.08, 0.20, 0.42);  // stratocumulus: lumps
-  if (k == 2) return vec4(0.00, 0.05, 0.18, 0.62);  // cumulus: a flat base and a dome
-  if (k == 3) return vec4(0.00, 0.04, 0.32, 0.88);  // cumulus congestus: towers
+  if (k == 2) return vec4(0.00, 0.05, 0.22, 0.72);  // cumulus: a flat base and a dome
+  if (k == 3) return vec4(0.00, 0.04, 0.40, 0.95);  // cumulus congestus: towers
   if (k == 4) return vec4(0.00, 0.03, 0.84, 1.00);  // cumulonimbus: to the top, where it spreads
   if (k == 5) return vec4(0.50, 0.56, 0.62, 0.78);  // altocumulus: small lumps at mid height
   if (k == 6) return vec4(0.42, 0.50, 0.60, 0.72);  // altostratus: a veil
@@ -69,7 +69,7 @@ float height_profile(vec4 profile, float height, float tops) {
   float h = profile.x + (height - profile.x) / (0.55 + 0.45 * tops);
   float rises = clamp((h - profile.x) / max(profile.y - profile.x, 1.0e-4), 0.0, 1.0);
   float falls = clamp((profile.w - h) / max(profile.w - profile.z, 1.0e-4), 0.0, 1.0);
-  return rises * falls;
+  return rises * falls * (2.0 - falls);  // a dome
 }
 // [/profile]
 

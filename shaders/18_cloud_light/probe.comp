@@ -11,6 +11,7 @@ struct Ray {
   vec4 origin;     // w: altitude
   vec4 rest;       // w: cosine to the vertical
   vec4 direction;  // w: sine
+  vec4 end;        // x: distance to the ground, found in double
   vec4 sun;        // w: ground albedo
 };
 layout(binding = 7, std430) readonly buffer Rays {
@@ -30,8 +31,7 @@ void main() {
   if (i >= uint(work.w)) return;
   const Ray from = rays[i / uint(work.y)];
   const int block = extra.y + int(i % uint(work.y));
-  CloudRay ray = CloudRay(from.origin.xyz, from.rest.xyz, from.direction.xyz, from.origin.w, from.rest.w, from.direction.w, 0.0,
-                          ground_end(clouds.ground_radius_km, from.origin.w, from.rest.w, from.direction.w));
+  CloudRay ray = CloudRay(from.origin.xyz, from.rest.xyz, from.direction.xyz, from.origin.w, from.rest.w, from.direction.w, 0.0, from.end.x);
   ray = below_ceiling(clouds.ground_radius_km, clouds.ceiling_km, ray);
   vec4 result = vec4(0.0);
   if (work.x == 0) {

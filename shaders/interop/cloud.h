@@ -54,6 +54,7 @@ struct CloudBody {
   float painted;  // 1: the weather map is the user's: taken as it is
 };
 
+// [block]
 struct CloudBlock {
   int count;
   float ground_radius_km;
@@ -62,6 +63,7 @@ struct CloudBlock {
   int unused_0, unused_1, unused_2, unused_3;
   CloudBody bodies[kMostCloudBodies];
 };
+// [/block]
 // [/body]
 
 #if defined(__cplusplus) && !defined(WELKIN_SHADER_TWIN)

@@ -3,16 +3,18 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <glm/geometric.hpp>
-#include <sstream>
+#include <map>
 
 #include "chapters/16_noise/noise.hpp"
 #include "common/app/camera.hpp"
 #include "common/graph/composition.hpp"
 #include "common/image/atomic_file.hpp"
+#include "common/image/csv.hpp"
 
 namespace welkin::test {
 
@@ -143,6 +145,53 @@ GridFile::GridFile(const std::string& name) {
   text.append(reinterpret_cast<const char*>(density.data()), samples * sizeof(float));
   path_ = std::filesystem::temp_directory_path() / fmt::format("welkin_{}_{}.grid", name, getpid());
   write_file_atomically(path_, text);
+}
+
+GridScore grid_score(const std::string& name, const std::vector<std::pair<std::string, std::string>>& knobs) {
+  const GridFile file(name);
+  const CsvTable table = read_csv(std::string(WELKIN_TEST_DATA) + "/cloud_" + name + ".csv",
+                                  {"sigma_per_km", "ox", "oy", "oz", "dx", "dy", "dz", "tau", "T"},
+                                  {"kind", "L1_rel_err", "L2", "L2_se", "L5", "L5_se", "Linf", "Linf_se"});
+  const glm::dvec3 corner(2.0, -1.0, 30.0);
+  std::map<double, std::vector<size_t>> by_extinction;
+  for (size_t i = 0; i < table.rows; ++i) by_extinction[table.column("sigma_per_km")[i]].push_back(i);
+  GridScore score;
+  std::vector<double> depth_errors, t_errors;
+  const auto three = [&](size_t i, const char* x, const char* y, const char* z) {
+    return glm::dvec3(table.column(x)[i], table.column(y)[i], table.column(z)[i]);
+  };
+  for (const auto& [extinction, rows] : by_extinction) {
+    std::vector<app::ProbeRay> rays;
+    for (const size_t i : rows)
+      rays.push_back(ray_from(corner + three(i, "ox", "oy", "oz"), three(i, "dx", "dy", "dz")));
+    const CloudRun run(scene_of({{.kind = "grid",
+                                  .east_km = corner.x,
+                                  .north_km = corner.y,
+                                  .up_km = corner.z,
+                                  .file = file.path().string(),
+                                  .size_km = file.size_km,
+                                  .extinction_per_km = extinction}}),
+                       knobs);
+    const std::vector<double> depths = run.optical_depths(rays);
+    for (size_t k = 0; k < rows.size(); ++k) {
+      const double tau = table.column("tau")[rows[k]], t = table.column("T")[rows[k]];
+      INFO(name << " row " << rows[k] << " " << table.text("kind")[rows[k]] << " tau " << tau << " got " << depths[k]);
+      CHECK(std::isfinite(depths[k]));
+      if (tau == 0.0) CHECK(depths[k] < 1e-5);
+      ++score.rows;
+      score.worst_t = std::max(score.worst_t, std::abs(std::exp(-depths[k]) - t));
+      if (tau <= 1e-6) continue;
+      depth_errors.push_back(std::abs(depths[k] / tau - 1.0)),
+          t_errors.push_back(std::abs(std::expm1(tau - depths[k])));
+    }
+  }
+  const auto middle = [](std::vector<double>& values) {
+    std::sort(values.begin(), values.end());
+    return values.at(values.size() / 2);
+  };
+  score.median_depth = middle(depth_errors), score.median_t = middle(t_errors);
+  score.worst_depth = depth_errors.back();
+  return score;
 }
 
 }  // namespace welkin::test

@@ -90,7 +90,7 @@ TEST_CASE("hard: the length inside a shell, from the ground, from inside and fro
   CHECK(airliner.naive > airliner.robust);
 }
 
-TEST_CASE("hard: a cloud seen from 36,000 km is counted from its top, not from the camera") {
+TEST_CASE("hard: from space a cloud is counted from its top and not from the camera") {
   // Straight down and obliquely, 2.5 km of cloud: from the camera, floats lie 4 m apart.
   std::vector<ShapeItem> below, far;
   std::vector<double> lengths;

@@ -21,12 +21,6 @@ Cloud layer(double base_km, double top_km, double extinction_per_km) {
   return {.kind = "layer", .base_km = base_km, .top_km = top_km, .extinction_per_km = extinction_per_km};
 }
 
-double median(std::vector<double> values) {
-  REQUIRE_FALSE(values.empty());
-  std::nth_element(values.begin(), values.begin() + static_cast<long>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
-
 // Length of a ray inside a set, in double: boundaries are found by bisection between 20,000 samples.
 template <typename Inside>
 double length_inside(double end_km, const Inside& inside) {
@@ -73,7 +67,7 @@ TEST_CASE("truth: a layer from half a metre to 36,000 km, tangent rays among the
       CHECK(std::abs(std::exp(-depths[i]) - table.column(column)[i]) < 1e-3);
     }
   }
-  CHECK(strict > 150);
+  CHECK(strict > 100);
   CHECK(tangent > 10);
 }
 
@@ -168,69 +162,19 @@ TEST_CASE("truth: a disc is a shell cut out by a cone, over the place and 60 km 
   }
 }
 
-namespace {
-
-struct GridScore {
-  double worst_exact = 0.0, median_exact = 0.0, median_depth = 0.0, median_t = 0.0;
-  size_t rows = 0;
-};
-
-// All rows of a table: errors of T, of the exact columns and of the default march. The box stands 30 km up.
-GridScore score_of(const std::string& name, const std::vector<std::pair<std::string, std::string>>& knobs) {
-  const GridFile file(name);
-  const CsvTable table = read_csv(std::string(WELKIN_TEST_DATA) + "/cloud_" + name + ".csv",
-                                  {"sigma_per_km", "ox", "oy", "oz", "dx", "dy", "dz", "tau", "T"}, {"kind"});
-  const glm::dvec3 corner(2.0, -1.0, 30.0);
-  std::map<double, std::vector<size_t>> by_extinction;
-  for (size_t i = 0; i < table.rows; ++i) by_extinction[table.column("sigma_per_km")[i]].push_back(i);
-  GridScore score;
-  std::vector<double> depth_errors, t_errors;
-  for (const auto& [extinction, rows] : by_extinction) {
-    std::vector<app::ProbeRay> rays;
-    const auto three = [&](size_t i, const char* x, const char* y, const char* z) {
-      return glm::dvec3(table.column(x)[i], table.column(y)[i], table.column(z)[i]);
-    };
-    for (const size_t i : rows)
-      rays.push_back(ray_from(corner + three(i, "ox", "oy", "oz"), three(i, "dx", "dy", "dz")));
-    const CloudRun run(scene_of({{.kind = "grid",
-                                  .east_km = corner.x,
-                                  .north_km = corner.y,
-                                  .up_km = corner.z,
-                                  .file = file.path().string(),
-                                  .size_km = file.size_km,
-                                  .extinction_per_km = extinction}}),
-                       knobs);
-    const std::vector<double> depths = run.optical_depths(rays);
-    for (size_t k = 0; k < rows.size(); ++k) {
-      const double tau = table.column("tau")[rows[k]], t = table.column("T")[rows[k]];
-      INFO(name << " row " << rows[k] << " " << table.text("kind")[rows[k]] << " tau " << tau << " got " << depths[k]);
-      CHECK(std::isfinite(depths[k]));
-      if (tau == 0.0) CHECK(depths[k] < 1e-5);
-      ++score.rows;
-      score.worst_exact = std::max(score.worst_exact, std::abs(std::exp(-depths[k]) - t));
-      if (tau > 1e-6) depth_errors.push_back(std::abs(depths[k] / tau - 1.0));
-      if (tau > 1e-6) t_errors.push_back(std::abs(std::expm1(tau - depths[k])));
-    }
-  }
-  score.median_depth = median(depth_errors), score.median_t = median(t_errors);
-  return score;
-}
-
-}  // namespace
-
 TEST_CASE(
     "truth: columns of the grids, exact to 1e-3 and marched to 1 % in the median, at optical depths 0.5, 10, 60") {
   for (const char* name : {"blob", "cumulus", "deck"}) {
-    const GridScore exact = score_of(name, {{"cloud.grid", "exact"}}), marched = score_of(name, {});
-    CAPTURE(name, exact.rows, exact.worst_exact, exact.median_depth, exact.median_t, marched.worst_exact,
-            marched.median_depth, marched.median_t);
+    const GridScore exact = grid_score(name, {{"cloud.grid", "exact"}}), marched = grid_score(name, {});
+    CAPTURE(name, exact.rows, exact.worst_t, exact.median_depth, exact.median_t, marched.worst_t, marched.median_depth,
+            marched.median_t);
     CHECK(exact.rows > 100);
-    CHECK(exact.worst_exact < 1e-3);
+    CHECK(exact.worst_t < 1e-3);
     CHECK(exact.median_t < 1e-3);
     CHECK(exact.median_depth < 1e-4);
     CHECK(marched.median_depth < 0.01);
     CHECK(marched.median_t < 0.01);
-    const GridScore fine = score_of(name, {{"cloud.grid_steps", "8"}});
+    const GridScore fine = grid_score(name, {{"cloud.grid_steps", "8"}});
     CAPTURE(fine.median_depth);
     CHECK(fine.median_depth < 0.5 * marched.median_depth + 1e-6);  // it converges
   }

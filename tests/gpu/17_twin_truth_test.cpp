@@ -12,7 +12,7 @@
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #pragma GCC diagnostic ignored "-Wunused-variable"
 
-namespace twin {
+namespace cloud_twin {
 using vec2 = glm::dvec2;
 using vec3 = glm::dvec3;
 using vec4 = glm::dvec4;
@@ -42,13 +42,13 @@ struct Volume {
     return sum;
   }
 };
-Volume base, detail, curl, weather;
+Volume base_volume, detail_volume, curl_map, weather_map;
 
 const int CLOUD_KINDS = 31;
-vec4 weather_texel(vec2 uv) { return weather.read(vec3(uv, 0.0)); }
-vec4 base_noise(vec3 uvw) { return base.read(uvw); }
-vec4 detail_noise(vec3 uvw) { return detail.read(uvw); }
-vec4 curl_noise(vec2 uv) { return curl.read(vec3(uv, 0.0)); }
+vec4 weather_texel(vec2 uv) { return weather_map.read(vec3(uv, 0.0)); }
+vec4 base_noise(vec3 uvw) { return base_volume.read(uvw); }
+vec4 detail_noise(vec3 uvw) { return detail_volume.read(uvw); }
+vec4 curl_noise(vec2 uv) { return curl_map.read(vec3(uv, 0.0)); }
 double grid_texel(int, int, int) { return 0.0; }
 double grid_filtered(vec3) { return 0.0; }
 #undef WELKIN_INTEROP_CLOUD_H
@@ -69,7 +69,7 @@ CloudBody body_of(const welkin::interop::CloudBody& b) {
   body.turn_y = b.turn_y, body.shift_x = b.shift_x, body.shift_y = b.shift_y, body.painted = b.painted;
   return body;
 }
-}  // namespace twin
+}  // namespace cloud_twin
 
 using namespace welkin;
 using namespace welkin::test;
@@ -85,31 +85,37 @@ Scene scene_with(const std::string& preset) {
 }
 
 void read_textures(const CloudRun& run) {
-  const auto read = [&](twin::Volume& volume, CloudRun::Read which, int side, int slices) {
+  const auto read = [&](cloud_twin::Volume& volume, CloudRun::Read which, int side, int slices) {
     volume = {side, slices, run.texels(which, size_t(side) * side * slices)};
   };
-  read(twin::base, CloudRun::Read::base, 128, 128);
-  read(twin::detail, CloudRun::Read::detail, 32, 32);
-  read(twin::curl, CloudRun::Read::curl, 128, 1);
-  read(twin::weather, CloudRun::Read::weather, 512, 1);
+  read(cloud_twin::base_volume, CloudRun::Read::base, 128, 128);
+  read(cloud_twin::detail_volume, CloudRun::Read::detail, 32, 32);
+  read(cloud_twin::curl_map, CloudRun::Read::curl, 128, 1);
+  read(cloud_twin::weather_map, CloudRun::Read::weather, 512, 1);
 }
 
-twin::CloudRay twin_ray(const app::ProbeRay& ray) {
+cloud_twin::CloudRay twin_ray(const app::ProbeRay& ray) {
   const glm::dvec3 position = ray.position_km, centre = position + glm::dvec3(0.0, 0.0, kR);
   const double r = glm::length(centre), mu = glm::dot(centre, ray.direction) / r;
   const double sine = glm::length(glm::cross(centre, ray.direction)) / r;
   const double altitude = app::altitude_km({.position_km = position}, kR);
-  twin::CloudRay from{
-      position, glm::dvec3(0.0), ray.direction, altitude, mu, sine, 0.0, twin::ground_end(kR, altitude, mu, sine)};
+  cloud_twin::CloudRay from{position,
+                            glm::dvec3(0.0),
+                            ray.direction,
+                            altitude,
+                            mu,
+                            sine,
+                            0.0,
+                            cloud_twin::ground_end(kR, altitude, mu, sine)};
   return from;
 }
 
 // Optical depth of the bodies of a scene along a ray, marched in double.
 double truth_of(const interop::CloudBlock& block, const app::ProbeRay& ray, int steps, int detail) {
-  const twin::CloudRay from = twin::below_ceiling(kR, block.ceiling_km, twin_ray(ray));
+  const cloud_twin::CloudRay from = cloud_twin::below_ceiling(kR, block.ceiling_km, twin_ray(ray));
   double sum = 0.0;
   for (int i = 0; i < block.count && from.end_km > 0.0; ++i)
-    sum += twin::body_optical_depth(twin::body_of(block.bodies[i]), kR, from, {steps, detail, 0, 1, 0.5});
+    sum += cloud_twin::body_optical_depth(cloud_twin::body_of(block.bodies[i]), kR, from, {steps, detail, 0, 1, 0.5});
   return sum;
 }
 

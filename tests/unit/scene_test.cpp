@@ -22,7 +22,8 @@ using welkin::Scene;
 
 const fs::path kRoot = fs::path(__FILE__).parent_path().parent_path().parent_path();
 const fs::path kScenes = kRoot / "chapters/scenes";
-const char* const kNames[] = {"earth", "alien", "today", "noon", "sunset", "twilight", "orbit"};
+const char* const kNames[] = {"earth", "alien",    "today", "noon",     "sunset",
+                              "fair",  "overcast", "storm", "twilight", "orbit"};
 const std::string kView = "[[view]]\nname = \"v\"\n";  // two lines
 
 template <typename Call>
@@ -282,7 +283,8 @@ TEST_CASE("files that are no scenes", "[scene]") {
   CHECK_THAT(load("a\nb.toml"), Catch::Contains("a\\x0ab.toml"));
   CHECK_THAT(load(std::string("earth\0.toml", 11)), Catch::Contains("not a file name"));
   CHECK(load("mars") ==
-        "unknown scene 'mars': known are alien, earth, noon, orbit, sunset, today, twilight; a file's name "
+        "unknown scene 'mars': known are alien, earth, fair, noon, orbit, overcast, storm, sunset, today, twilight; a "
+        "file's name "
         "ends in .toml or .png");
   CHECK_THAT(load(""), Catch::StartsWith("no scene named: known are alien, earth"));
   CHECK_THAT(refused([&] { welkin::load_scene("earth", directory.path / "none"); }), Catch::Contains("known are none"));

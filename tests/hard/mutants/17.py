@@ -38,5 +38,5 @@ MUTANTS = [
     ("a position that is not wrapped around", "17_cloud_shapes/density.glsl",
      "return vec3(origin_km.x - wrap_km * floor(origin_km.x / wrap_km),", "return vec3(origin_km.x,", "hard: a position is wrapped around exactly*"),
     ("from space, lengths counted from the camera", "17_cloud_shapes/spans.glsl",
-     "if (ray.altitude_km <= ceiling_km) return moved;", "return moved;", "hard: a cloud seen from 36,000 km*"),
+     "if (ray.altitude_km <= ceiling_km) return moved;", "return moved;", "hard: from space a cloud is counted*"),
 ]

@@ -1,0 +1,34 @@
+// Writes the table of errors on the page of chapter 17:
+//   WELKIN_TABLE=docs/generated gpu_tests "[17_table]"
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <stdexcept>
+
+#include "common/image/csv.hpp"
+#include "tests/gpu/17_clouds.hpp"
+
+using namespace welkin;
+using namespace welkin::test;
+
+TEST_CASE("table of errors of grids", "[.][17_table]") {
+  const char* directory = std::getenv("WELKIN_TABLE");
+  if (directory == nullptr) throw std::runtime_error("WELKIN_TABLE names no directory");
+  std::vector<std::vector<std::string>> rows;
+  for (const char* name : {"blob", "cumulus", "deck"})
+    for (const auto& [rung, knobs] :
+         {std::pair<std::string, std::vector<std::pair<std::string, std::string>>>{"exact", {{"cloud.grid", "exact"}}},
+          {"marched, 1 step a cell", {}},
+          {"marched, 4 steps", {{"cloud.grid_steps", "4"}}},
+          {"marched, 1 step, bytes", {{"cloud.grid_format", "bytes"}}}}) {
+      const GridScore score = grid_score(name, knobs);
+      rows.push_back({name, rung, fmt::format("{}", score.rows), fmt::format("{:.2g}", score.median_depth),
+                      fmt::format("{:.2g}", score.worst_depth), fmt::format("{:.2g}", score.worst_t)});
+    }
+  write_csv(std::string(directory) + "/17_truth.csv",
+            {"relative errors of optical depths along the rays of tests/data/cloud_*.csv, and the largest error of T",
+             "device: " + device().candidate().name, "driver: " + device().candidate().driver,
+             "source: WELKIN_TABLE=docs/generated gpu_tests \"[17_table]\""},
+            {"grid", "rung", "rays", "median", "worst", "worst_t"}, rows);
+}
