@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "chapters/04_air/air_block.hpp"
+#include "chapters/09_multiple_scattering_lut/multiple_scattering_lut.hpp"
 #include "chapters/11_aerial_perspective/relief.hpp"
 #include "chapters/17_cloud_shapes/grid_file.hpp"
 
@@ -93,6 +95,7 @@ std::vector<Knob> cloud_light_knobs() {
           {.name = "cloud.octave_b", .meaning = "of the contribution; not above cloud.octave_a", .initial = 0.5},
           {.name = "cloud.octave_c", .meaning = "of the anisotropy", .initial = 0.5},
           {.name = "cloud.powder", .meaning = "strength of the powder term; 0 leaves it out", .initial = 0.0},
+          {.name = "cloud.ambient", .meaning = "light of sky and ground", .initial = 1, .choices = {"off", "on"}},
           {.name = "cloud.view_steps",
            .unit = "steps",
            .meaning = "along a ray through the hulls of all clouds",
@@ -145,7 +148,8 @@ CloudLightPush cloud_light_push(const Settings& settings) {
                       .escape_samples = settings.integer("cloud.escape_samples"),
                       .method = settings.integer("cloud.orders"),
                       .octaves = settings.integer("cloud.octaves"),
-                      .unused = {},
+                      .ambient = settings.choice("cloud.ambient") == "on",
+                      .unused = 0,
                       .octave_a = number("cloud.octave_a"),
                       .octave_b = number("cloud.octave_b"),
                       .octave_c = number("cloud.octave_c"),
@@ -189,13 +193,22 @@ app::Effect cloud_light() {
     const graph::Resource before = board.get<app::Picture>("a sky").image;
     const graph::Resource after = builder.picture(board, "cloud light");
     const TerrainMaps* terrain = board.find<TerrainMaps>();
-    graph::Step step{.shader = "18_cloud_light/light.comp",
-                     .constants = {{"HAS_TERRAIN", terrain != nullptr}},
-                     .bindings = {{"behind", before},
-                                  {"terrain_distance", terrain != nullptr ? terrain->distance : before},
-                                  {"cloud_bounds", board.get<CloudBounds>("cloud bounds").image},
-                                  {"target", after}}};
-    bind_clouds(step, board.get<CloudBodies>("clouds"));
+    const CloudBodies& bodies = board.get<CloudBodies>("clouds");
+    const AirBlock& air = board.get<AirBlock>("the air");
+    const MultipleScatteringTable* table = board.find<MultipleScatteringTable>();
+    graph::Step step{
+        .shader = "18_cloud_light/light.comp",
+        .constants = joined(air.constants, {{"HAS_TERRAIN", terrain != nullptr}, {"HAS_AIR", table != nullptr}}),
+        .bindings = {{"Air", air.block},
+                     {"multiple_scattering_table", table != nullptr ? table->image : bodies.weather},
+                     {"behind", before},
+                     {"terrain_distance", terrain != nullptr ? terrain->distance : before},
+                     {"cloud_bounds", board.get<CloudBounds>("cloud bounds").image},
+                     {"target", after}}};
+    step.constants =
+        joined(step.constants,
+               table != nullptr ? table->constants : gpu::Constants{{"MS_METHOD", 0}, {"MS_MAP", 0}, {"MS_SIZE", 1}});
+    bind_clouds(step, bodies);
     step.record = [context, after](const graph::Recorder& r) {
       r.push(LightPush{cloud_light_push(context.settings), glm::vec4(context.scene.sun.irradiance, 0.0)});
       r.dispatch_over(r.graph.image(after).size);

@@ -17,7 +17,7 @@ std::vector<Knob> cloud_light_knobs();
 struct CloudLightPush {
   CloudMarchPush columns;
   int32_t view_steps, light_samples, escape_directions, escape_samples;
-  int32_t method, octaves, unused[2];
+  int32_t method, octaves, ambient, unused;
   float octave_a, octave_b, octave_c, powder;
   glm::vec4 sun;  // unit, global frame; w: escape refresh
 };

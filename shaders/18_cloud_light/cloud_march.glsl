@@ -29,6 +29,7 @@ struct CloudMarchSettings {
   int method;          // kOrders...
   Octaves octaves;
   float powder;        // strength; 0: none
+  float ambient;       // 1: light of sky and ground; 0: none
   int detail;          // of noise, along the view; light marches take its shape alone
   int grid_method;
 };
@@ -63,13 +64,16 @@ float light_depth(CloudPoint point, vec3 direction, int samples, CloudMarchSetti
   return tau;
 }
 
-// Mean escape chance over a few directions. The black ground takes what it meets: that is a way out, too.
-float mean_escape(CloudPoint point, float apart, CloudMarchSettings settings) {
-  float sum = 0.0;
+// Escape chances upward and downward, whose sum is the mean over a few directions. The ground takes what it meets: that is a
+// way out, too.
+vec2 mean_escape(CloudPoint point, float apart, CloudMarchSettings settings) {
+  vec2 sum = vec2(0.0, 0.0);
   for (int i = 0; i < settings.escape_directions; i++) {
     vec3 direction = escape_direction(i);
     if (settings.escape_directions == 2) direction = vec3(0.0, 0.0, i == 0 ? 1.0 : -1.0);
-    sum += escape_chance(light_depth(point, direction, settings.escape_samples, settings), apart);
+    float chance = escape_chance(light_depth(point, direction, settings.escape_samples, settings), apart);
+    if (direction.z > 0.0) sum.x += chance;
+    else sum.y += chance;
   }
   return sum / float(settings.escape_directions);
 }
@@ -93,8 +97,10 @@ Spans hull_of_spans(CloudRay ray) {
 
 // [cloud_light]
 struct CloudLight {
-  float radiance;
-  float tau;          // of the ray
+  float radiance;       // sunlight of irradiance 1
+  vec2 skylight;        // share of the radiance of the upper and of the lower half of the surroundings
+  float blurred;        // share of what is behind, blurred
+  float tau;            // of the ray
   float stopped_at_km;  // mean distance, weighted by where light stops
   float stopped;
 };
@@ -118,7 +124,7 @@ float step_edge(int i, int steps, bool grows) {
 }
 
 CloudLight march_cloud_light(CloudRay ray, CloudMarchSettings settings) {
-  CloudLight light = CloudLight(0.0, 0.0, 0.0, 0.0);
+  CloudLight light = CloudLight(0.0, vec2(0.0, 0.0), 0.0, 0.0, 0.0, 0.0);
   Spans hull = hull_of_spans(ray);
   bool grows = (CLOUD_KINDS & (kCloudGrid + kCloudNoise)) == 0;
   float nu_minus = one_minus_cosine(ray.direction, settings.sun);
@@ -132,7 +138,7 @@ CloudLight march_cloud_light(CloudRay ray, CloudMarchSettings settings) {
   HigherOrders orders = higher_orders(body_phase(0), 1.0, nu_minus, nu_plus);
   CloudPhase phase = body_phase(0);
   int steps = view_steps(ray, total_km, settings.steps);
-  float escape = 1.0;
+  vec2 escape = vec2(0.5, 0.5);
   float refreshed = -1.0e9;
   int stride = 1;
   for (int n = 0; n < steps; n += stride) {
@@ -170,12 +176,17 @@ CloudLight march_cloud_light(CloudRay ray, CloudMarchSettings settings) {
     if (settings.method == kOrdersOctaves) source = octave_sum(phase, settings.octaves, tau_sun, nu_minus, nu_plus);
     else source = cloud_phase(phase, nu_minus, nu_plus) * exp(-tau_sun);
     light.radiance += scattering / extinction * source * stops * powder(tau_sun, settings.powder);
-    if (settings.method == kOrdersEscape && !dark) {
+    if (settings.method == kOrdersEscape) {
       if (orders.apart * (light.tau + across - refreshed) > settings.escape_refresh) {
         escape = mean_escape(point, orders.apart, settings);
         refreshed = light.tau;
       }
-      light.radiance += higher_orders_of_step(orders, light.tau, across, tau_sun, escape);
+      if (!dark) light.radiance += higher_orders_of_step(orders, light.tau, across, tau_sun, escape.x + escape.y);
+      light.skylight += skylight_of_step(orders, light.tau, across, escape) * settings.ambient;
+    } else if (settings.ambient > 0.0) {
+      float above = light_depth(point, vec3(0.0, 0.0, 1.0), settings.escape_samples, settings);
+      float below = light_depth(point, vec3(0.0, 0.0, -1.0), settings.escape_samples, settings);
+      light.skylight += vec2(ambient_from_sky(above), ambient_from_sky(below)) * (scattering / extinction * stops * settings.ambient);
     }
     light.tau += across;
     light.stopped += stops;
@@ -184,6 +195,7 @@ CloudLight march_cloud_light(CloudRay ray, CloudMarchSettings settings) {
     float left = settings.method == kOrdersEscape ? orders.apart * light.tau : light.tau;
     if (left > 5.0) break;
   }
+  if (settings.method == kOrdersEscape) light.blurred = blurred_behind(orders, light.tau) * settings.ambient;
   return light;
 }
 // [/cloud_light]

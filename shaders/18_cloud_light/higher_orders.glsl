@@ -12,6 +12,7 @@
 //             sun in direction s is the chance that light born at x leaves towards s. All light leaves somewhere, so
 //                fluence(x, s) = f(tau(x, s)) / mean over all directions of f(tau(x, .)),    f(tau) = (1 + k tau)^(-3/2)
 //             keeps the light of a white furnace by construction. It is seen through the same straight ways: e^(-k tau).
+//             Light of the sky and of the ground comes by the same ways: each has its directions' share of that mean.
 //
 // f was chosen among powers on slabs and balls alone; it has no other constant. See docs/chapters/18_cloud_light_more.md.
 #ifndef WELKIN_HIGHER_ORDERS_GLSL
@@ -88,6 +89,19 @@ float straight_moment(float keeps, float t, float tau_sun, float weight, float p
   return (exp(-(1.0 - keeps) * tau_sun) * weight - exp(-tau_sun) * plain) / t - keeps * exp(-tau_sun) * plain;
 }
 // [/straight]
+
+// [skylight]
+// Of one step, the share of the skies' radiance that is scattered there to the eye: of the upper and the lower half, whose
+// directions have these sums of escape chances.
+vec2 skylight_of_step(HigherOrders orders, float before, float across, vec2 escape) {
+  float scattered = (orders.albedo - orders.keeps) * step_weight(orders.apart, before, across);
+  return vec2(escape.x, escape.y) * (scattered / max(escape.x + escape.y, 1.0e-20));
+}
+
+// And the share of the radiance behind the cloud that comes through having only kept its direction, without what comes through
+// untouched. With the two above and e^-tau the shares of a cloud that absorbs nothing add up to 1.
+float blurred_behind(HigherOrders orders, float tau) { return exp(-orders.apart * tau) - exp(-tau); }
+// [/skylight]
 
 // [orders_of_step]
 // Radiance of orders >= 2 from one step, with the sun's irradiance 1: optical depth before it and across it, from its middle to

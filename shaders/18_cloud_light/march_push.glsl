@@ -5,7 +5,7 @@
 struct CloudLightPush {
   ivec4 columns;  // as chapter 17's CloudMarch: steps, detail, grid method, grid steps
   ivec4 light;    // view steps, samples to the sun, escape directions, samples in each
-  ivec4 orders;   // which stand-in, octaves
+  ivec4 orders;   // which stand-in, octaves, 1: light of sky and ground
   vec4 octaves;   // a, b, c, powder
   vec4 sun;       // xyz: unit, global frame; w: escape refresh
 };
@@ -22,6 +22,7 @@ CloudMarchSettings march_settings(CloudLightPush push) {
   settings.method = push.orders.x;
   settings.octaves = Octaves(push.orders.y, push.octaves.x, push.octaves.y, push.octaves.z);
   settings.powder = push.octaves.w;
+  settings.ambient = float(push.orders.z);
   settings.detail = push.columns.y;
   settings.grid_method = push.columns.z;
   return settings;

@@ -2,6 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
+#define CLOUD_BINDING 0
 #include "18_cloud_light/scene_block.glsl"
 #include "18_cloud_light/cloud_path.glsl"
 #include "18_cloud_light/first_order.glsl"

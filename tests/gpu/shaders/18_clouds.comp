@@ -117,13 +117,14 @@ void main() {
     march.method = int(in_at(item, 27));
     march.octaves = Octaves(int(in_at(item, 28)), 0.5, 0.5, 0.5);
     march.powder = 0.0;
+    march.ambient = 1.0;
     march.detail = kWithCurledDetail;
     march.grid_method = kGridFiltered;
     const CloudLight light = march_cloud_light(ray, march);
     outputs[4 * item] = light.radiance;
     outputs[4 * item + 1] = light.tau;
-    outputs[4 * item + 2] = light.stopped;
-    outputs[4 * item + 3] = 0.0;
+    outputs[4 * item + 2] = light.skylight.x + light.skylight.y;
+    outputs[4 * item + 3] = light.blurred;
     return;
   }
   const int samples = int(in_at(item, 29));
