@@ -227,15 +227,25 @@ std::vector<CloudLight> trace_clouds(const std::vector<CloudItem>& items, const 
 
 namespace {
 
-std::vector<double> evaluate_clouds(const std::vector<CloudItem>& items, const std::vector<float>& grid,
-                                    uint32_t method) {
+std::vector<float> four_each(const std::vector<CloudItem>& items, const std::vector<float>& grid, uint32_t method) {
   std::vector<float> inputs(items.size() * 32);
   std::memcpy(inputs.data(), items.data(), inputs.size() * sizeof(float));
   const uint32_t kinds = grid.size() > 100 ? 13u : 5u;
-  const std::vector<float> out = evaluate("tests/18_clouds.comp", inputs, 32, 4, {method, 0u, kinds}, grid);
+  return evaluate("tests/18_clouds.comp", inputs, 32, 4, {method, 0u, kinds}, grid);
+}
+
+std::vector<double> evaluate_clouds(const std::vector<CloudItem>& items, const std::vector<float>& grid,
+                                    uint32_t method) {
+  const std::vector<float> out = four_each(items, grid, method);
   std::vector<double> lights;
   for (size_t i = 0; i < items.size(); ++i) lights.push_back(out[4 * i]);
   return lights;
+}
+
+void set_march(CloudItem& item, const CloudMarching& marching) {
+  item.side_rays = static_cast<float>(marching.orders), item.orders = static_cast<float>(marching.octaves);
+  item.samples = static_cast<float>(marching.steps), item.path = static_cast<float>(marching.light_samples);
+  item.seed = static_cast<float>(100 * marching.refresh + 10 * marching.escape_directions + marching.escape_samples);
 }
 
 }  // namespace
@@ -243,12 +253,19 @@ std::vector<double> evaluate_clouds(const std::vector<CloudItem>& items, const s
 std::vector<double> march_clouds(const std::vector<CloudItem>& items, const std::vector<float>& grid,
                                  const CloudMarching& marching) {
   std::vector<CloudItem> all = items;
-  for (CloudItem& item : all) {
-    item.side_rays = static_cast<float>(marching.orders), item.orders = static_cast<float>(marching.octaves);
-    item.samples = static_cast<float>(marching.steps), item.path = static_cast<float>(marching.light_samples);
-    item.seed = static_cast<float>(100 * marching.refresh + 10 * marching.escape_directions + marching.escape_samples);
-  }
+  for (CloudItem& item : all) set_march(item, marching);
   return evaluate_clouds(all, grid, 1);
+}
+
+std::vector<double> furnace_by_escape(std::vector<CloudItem> items, const std::vector<float>& grid) {
+  for (CloudItem& item : items) {
+    item.albedo = 1.0f;
+    set_march(item, {.orders = 2, .steps = 32});
+  }
+  const std::vector<float> out = four_each(items, grid, 1);
+  std::vector<double> sums;
+  for (size_t i = 0; i < items.size(); ++i) sums.push_back(out[4 * i + 2] + out[4 * i + 3] + std::exp(-out[4 * i + 1]));
+  return sums;
 }
 
 std::vector<double> first_orders(const std::vector<CloudItem>& items, const std::vector<float>& grid) {

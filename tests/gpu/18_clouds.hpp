@@ -50,6 +50,9 @@ struct CloudMarching {
 std::vector<double> march_clouds(const std::vector<CloudItem>& items, const std::vector<float>& grid,
                                  const CloudMarching& marching);
 
+// By escape, of clouds that absorb nothing in surroundings of radiance 1, without the sun: what comes from the
+// surroundings by scattering, what has kept its direction, and what was not scattered. They should add up to 1.
+std::vector<double> furnace_by_escape(std::vector<CloudItem> items, const std::vector<float>& grid);
 // Order 1, converged.
 std::vector<double> first_orders(const std::vector<CloudItem>& items, const std::vector<float>& grid);
 
