@@ -66,9 +66,7 @@ float cloud_optical_depth(CloudRay ray, CloudMarch march) { return body_optical_
 float in_at(uint item, int k) { return inputs[32 * item + k]; }
 vec3 three(uint item, int k) { return vec3(in_at(item, k), in_at(item, k + 1), in_at(item, k + 2)); }
 
-void main() {
-  const uint item = gl_GlobalInvocationID.x;
-  if (item >= count) return;
+CloudBody body_of(uint item) {
   CloudBody body;
   body.kind = int(in_at(item, 0));
   body.extinction_per_km = in_at(item, 1);
@@ -88,6 +86,13 @@ void main() {
   body.samples_y = grid_size(1);
   body.samples_z = grid_size(2);
   body.first_slice = 0;
+  return body;
+}
+
+void main() {
+  const uint item = gl_GlobalInvocationID.x;
+  if (item >= count) return;
+  const CloudBody body = body_of(item);
   clouds.count = 1;
   clouds.bodies[0] = body;
   clouds.ground_radius_km = in_at(item, 23);
