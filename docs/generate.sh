@@ -19,6 +19,16 @@ WELKIN_BUILD=$build python3 tests/hard/mutants.py 05 --write $out/mutants.txt >/
 for table in 09_sweep_gpu 10_sweep_gpu 11_sweep_gpu; do
   python3 docs/plot.py $out/$table.csv docs/pictures/$table.svg
 done
+python3 docs/plot.py $out/16_sweep.csv docs/pictures/16_sweep.svg | tail -n 1 >$out/16_factor_of_two.txt
+# Chapter 16: where its textures come from at a first start, and at the next one.
+cache=$(mktemp -d)
+start() {
+  WELKIN_CACHE=$cache "$(program 16)" --headless --size 320x180 --frames 1 --explain --output "$cache/picture.png" |
+    sed -nE '/^(noise (base|curl|detail)|weather|alligator): /{s|/[^ ]*/[a-z_]*_[0-9a-f]*\.bin|the cache|;s/; kept in the cache/, kept/;p}'
+}
+{ echo cold && start && echo warm && start; } >$out/16_start.txt
+"$(program 16)" --headless --size 32x18 --frames 1 --output "$cache/picture.png" | sed -n '1s/.* · //p' >>$out/16_start.txt
+rm -r "$cache"
 for table in 10_sweep_gpu 11_sweep_gpu; do
   python3 docs/plot.py $out/$table.csv docs/pictures/$table.svg | tail -n 1 >$out/"${table/sweep_gpu/factor_of_two_gpu}".txt
 done

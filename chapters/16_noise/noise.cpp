@@ -39,7 +39,7 @@ gpu::Image kept_or_made(const gpu::Device& device, const TextureRecipe& recipe, 
     const CacheRead read = read_cached(file, key, words.as<char>());
     if (read.found) {
       gpu::Image image = image_of(device, recipe, std::move(words));
-      story = fmt::format("read from {} in {:.1f} ms", file.string(), elapsed_ms());
+      story = fmt::format("read in {:.1f} ms from {}", elapsed_ms(), file.string());
       return image;
     }
     fmt::print(stderr, "{}: {}; made anew\n", file.string(), read.fault);
@@ -127,9 +127,9 @@ std::vector<Knob> noise_knobs() {
        .meaning = "of fBm, each twice as fine and half as strong as the one before",
        .minimum = 1,
        .maximum = 6,
-       .initial = 4,
+       .initial = 3,
        .integer = true,
-       .ladder = {1, 2, 3, 4, 5, 6},
+       .ladder = {1, 3, 5},
        .rebuilds = true},
       {.name = "noise.format",
        .meaning = "bits of a number in the textures: 8, 16, or a half float",
@@ -149,7 +149,7 @@ std::vector<Knob> noise_knobs() {
        .initial = 0,
        .choices = {"off", "on"},
        .rebuilds = true}};
-  knobs.front().ladder = {0, 1, 2, 3};
+  knobs.front().ladder = {0, 1, 2};
   return knobs;
 }
 // [/knobs]

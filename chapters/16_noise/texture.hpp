@@ -22,7 +22,7 @@ struct TextureRecipe {
   NoiseKind kind = NoiseKind::base;
   uint32_t side = 128;  // texels, a power of two
   bool volume = true;   // side^3, or side^2
-  int octaves = 4;
+  int octaves = 3;
   uint32_t seed = 0;
   TexelFormat format = TexelFormat::bits8;
 

@@ -28,7 +28,9 @@ std::string fault_of(const Header& header, uint64_t key, uint64_t wanted, uint64
   if (std::memcmp(header.magic, expected.magic, sizeof header.magic) != 0) return "it is not one of ours";
   if (header.version != expected.version) return fmt::format("its version is {}", header.version);
   if (header.key != key) return "it was made from something else";
-  if (header.count != wanted || there != wanted) return fmt::format("it has {} of {} bytes", there, wanted);
+  if (header.count != wanted)
+    return fmt::format("it is said to have {} bytes, and {} are wanted", header.count, wanted);
+  if (there != wanted) return fmt::format("it has {} of {} bytes", there, wanted);
   return {};
 }
 

@@ -2,6 +2,7 @@
 #include "chapters/16_noise/viewer.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "chapters/16_noise/noise.hpp"
@@ -9,7 +10,8 @@
 namespace welkin {
 namespace {
 
-constexpr int kColor = 4;  // channel: the first three as colours
+constexpr uint32_t kRowsApart = 64;  // as in histogram.glsl
+constexpr int kColor = 4;            // channel: the first three as colours
 
 struct ViewPush {
   int32_t x, y, width, height;
@@ -36,28 +38,39 @@ struct Shown {
   float tiles, slice;
   int mip;  // below 0: the one whose texels are about as large as pixels
   Place place;
+  bool deck = false;  // as a body, where its numbers exceed `slice`
 };
+
+// The pixels of a place.
+ViewPush push_of(const Place& place, VkExtent2D size) {
+  const auto at = [](float share, float of, uint32_t pixels) {
+    return static_cast<int32_t>(std::lround(share / of * static_cast<float>(pixels)));
+  };
+  ViewPush push{.x = at(place.x, 16.0f, size.width), .y = at(place.y, 9.0f, size.height)};
+  push.width = at(place.x + place.width, 16.0f, size.width) - push.x;
+  push.height = at(place.y + place.height, 9.0f, size.height) - push.y;
+  return push;
+}
+
+void draw(const graph::Recorder& r, const ViewPush& push) {
+  r.push(push).dispatch_over({static_cast<uint32_t>(push.width), static_cast<uint32_t>(push.height)});
+}
 
 graph::Step step_of(const Shown& shown, graph::Resource picture) {
   constexpr gpu::Border around = gpu::Border::repeat;
-  return {.shader = shown.texture.volume ? "16_noise/view_volume.comp" : "16_noise/view_map.comp",
+  return {.shader = shown.deck             ? "16_noise/view_deck.comp"
+                    : shown.texture.volume ? "16_noise/view_volume.comp"
+                                           : "16_noise/view_map.comp",
           .bindings = {{"noise", shown.texture.resource, {.u = around, .v = around, .w = around}}, {"target", picture}},
           .record = [shown, picture](const graph::Recorder& r) {
-            const VkExtent2D size = r.graph.image(picture).size;
-            const auto at = [](float share, float of, uint32_t pixels) {
-              return static_cast<int32_t>(std::lround(share / of * static_cast<float>(pixels)));
-            };
-            const Place& p = shown.place;
-            ViewPush push{.x = at(p.x, 16.0f, size.width), .y = at(p.y, 9.0f, size.height)};
-            push.width = at(p.x + p.width, 16.0f, size.width) - push.x;
-            push.height = at(p.y + p.height, 9.0f, size.height) - push.y;
+            ViewPush push = push_of(shown.place, r.graph.image(picture).size);
             push.channel = shown.channel, push.tiles = shown.tiles, push.slice = shown.slice;
             push.is_signed = shown.texture.is_signed ? 1 : 0;
             const float texels = static_cast<float>(r.graph.image(shown.texture.resource).size.width) * shown.tiles;
             push.mip = shown.mip >= 0
                            ? static_cast<float>(shown.mip)
                            : std::max(0.0f, std::log2(texels / static_cast<float>(std::max(push.height, 1))));
-            r.push(push).dispatch_over({static_cast<uint32_t>(push.width), static_cast<uint32_t>(push.height)});
+            draw(r, push);
           }};
 }
 
@@ -84,9 +97,9 @@ std::vector<Shown> sheet(const std::vector<Texture>& textures, float slice) {
 // [knobs]
 std::vector<Knob> viewer_knobs() {
   return {{.name = "noise.show",
-           .meaning = "a texture, or all of them on one sheet",
+           .meaning = "a texture, all of them on one sheet, or the base as a deck of lumps",
            .initial = 0,
-           .choices = {"all", "base", "detail", "curl", "weather", "alligator"},
+           .choices = {"all", "base", "detail", "curl", "weather", "alligator", "deck"},
            .rebuilds = true},
           {.name = "noise.channel",
            .meaning = "one of its numbers in grey, or three as colours",
@@ -105,6 +118,17 @@ std::vector<Knob> viewer_knobs() {
            .maximum = 16,
            .initial = 1,
            .rebuilds = true},
+          {.name = "noise.level",
+           .meaning = "the number above which there is a lump, at the deck's foot",
+           .minimum = 0,
+           .maximum = 1,
+           .initial = 0.36,
+           .rebuilds = true},
+          {.name = "noise.histogram",
+           .meaning = "of the channel, below the texture",
+           .initial = 0,
+           .choices = {"off", "on"},
+           .rebuilds = true},
           {.name = "noise.mip",
            .meaning = "which mip; -1: the one whose texels are as large as pixels",
            .minimum = -1,
@@ -114,6 +138,38 @@ std::vector<Knob> viewer_knobs() {
            .rebuilds = true}};
 }
 // [/knobs]
+
+// [histogram]
+// Counts a channel of the texture when that is new, and draws the counts into a place of the picture.
+static graph::Resource add_histogram(app::Builder& builder, const Shown& shown) {
+  const graph::Resource bins = builder.graph.add_buffer("noise histogram", {.bytes = 256 * sizeof(uint32_t)});
+  graph::Pass pass{.name = "noise histogram"};
+  pass.steps.push_back({.accesses = {{bins, gpu::kUpdate}}, .record = [bins](const graph::Recorder& r) {
+                          vkCmdFillBuffer(r.frame.commands, r.graph.buffer(bins).handle, 0, VK_WHOLE_SIZE, 0);
+                        }});
+  pass.steps.push_back(
+      {.shader = shown.texture.volume ? "16_noise/histogram_volume.comp" : "16_noise/histogram_map.comp",
+       .bindings = {{"noise", shown.texture.resource}, {"Histogram", bins}},
+       .record = [shown](const graph::Recorder& r) {
+         r.push(std::array<int32_t, 2>{shown.channel, shown.texture.is_signed ? 1 : 0});
+         r.dispatch(kRowsApart);
+       }});
+  builder.graph.add(std::move(pass));
+  return bins;
+}
+
+static graph::Step histogram_step(const Shown& shown, graph::Resource bins, graph::Resource picture, Place place) {
+  return {.shader = "16_noise/view_histogram.comp",
+          .bindings = {{"Histogram", bins}, {"target", picture}},
+          .record = [=](const graph::Recorder& r) {
+            ViewPush push = push_of(place, r.graph.image(picture).size);
+            const gpu::Image& image = r.graph.image(shown.texture.resource);
+            const uint32_t texels = image.size.width * image.size.height * image.depth;
+            push.histogram = static_cast<int32_t>(texels * (shown.channel == kColor ? 3 : 1));
+            draw(r, push);
+          }};
+}
+// [/histogram]
 
 // [viewer]
 app::Effect noise_viewer() {
@@ -130,7 +186,10 @@ app::Effect noise_viewer() {
     const std::string& name = settings.choice("noise.show");
     const float slice = static_cast<float>(settings.number("noise.slice"));
     std::vector<Shown> shown = sheet(textures, slice);
-    if (name != "all") {
+    if (name == "deck") {
+      const float level = static_cast<float>(settings.number("noise.level"));
+      shown = {{textures[0], static_cast<int>(settings.number("noise.channel")), 1.0f, level, 0, {}, true}};
+    } else if (name != "all") {
       const auto texture =
           std::find_if(textures.begin(), textures.end(), [&](const Texture& t) { return t.name == name; });
       shown = {{*texture,
@@ -142,6 +201,11 @@ app::Effect noise_viewer() {
     }
     const graph::Resource picture = builder.picture(board, "noise viewer");
     graph::Pass pass{.name = "noise viewer", .changed = [](const app::Frame&) { return true; }};
+    if (settings.choice("noise.histogram") == "on" && shown.size() == 1 && !shown[0].deck) {
+      constexpr Place below{0.0f, 7.0f, 16.0f, 2.0f};
+      shown[0].place.height = below.y;
+      pass.steps.push_back(histogram_step(shown[0], add_histogram(builder, shown[0]), picture, below));
+    }
     for (const Shown& one : shown) pass.steps.push_back(step_of(one, picture));
     builder.graph.add(std::move(pass));
   };

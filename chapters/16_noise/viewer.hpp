@@ -7,7 +7,7 @@
 
 namespace welkin {
 
-std::vector<Knob> viewer_knobs();  // noise.show, .channel, .slice, .tiles, .mip, .histogram
+std::vector<Knob> viewer_knobs();  // noise.show, .channel, .slice, .tiles, .level, .histogram, .mip
 
 // Pass "noise viewer", and pass "noise histogram" where one is shown. The picture is for a display that shows values as
 // they are.

@@ -92,10 +92,10 @@ std::vector<Cloud> preset_bodies(const Weather& weather) {
                  .extinction_per_km = extinction_per_km,
                  .phase = CloudPhase::droplets};
   };
-  if (weather.preset == "fair") return {body("cumulus", 1.3, 3.4, 0.38, 2.0, 60.0)};
+  if (weather.preset == "fair") return {body("cumulus", 1.3, 3.4, 0.43, 2.0, 60.0)};
   if (weather.preset == "broken") return {body("stratocumulus", 1.1, 3.1, 0.62, 1.5, 50.0)};
   if (weather.preset == "overcast") return {body("stratus", 0.7, 3.4, 0.97, 0.4, 30.0)};
-  if (weather.preset == "storm") return {body("cumulonimbus", 0.9, 10.5, 0.36, 4.0, 50.0)};
+  if (weather.preset == "storm") return {body("cumulonimbus", 0.9, 10.5, 0.4, 4.0, 50.0)};
   if (weather.preset == "mackerel") return {body("altocumulus", 4.0, 5.4, 0.6, 5.0, 12.0)};
   return {};  // clear
 }

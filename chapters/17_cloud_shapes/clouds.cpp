@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <glm/gtc/packing.hpp>
-#include <set>
+#include <memory>
 
 #include "chapters/16_noise/noise.hpp"
 #include "chapters/17_cloud_shapes/grid_file.hpp"
@@ -46,13 +46,19 @@ std::string painted_map(const std::vector<Cloud>& bodies) {
 }
 
 // All grids in one texture, stacked along z: no filter reads across, because the outer samples of each lie at the
-// centres of its outer texels. Fills in what the block must know of them.
-// [stack]
-gpu::Image stack_grids(const app::Context& context, const std::vector<Cloud>& bodies, interop::CloudBlock& block) {
-  std::vector<DensityGrid> grids;
-  std::vector<int> first;
+// centres of its outer texels.
+struct StackedGrids {
   VkExtent3D size{0, 0, 0};
-  bool fits_bytes = context.settings.choice("cloud.grid_format") == "bytes";
+  std::vector<float> texels;
+  bool as_bytes = false;
+};
+
+// Reads the files, and fills in what the block must know of them.
+// [stack]
+StackedGrids stack_grids(const std::vector<Cloud>& bodies, bool as_bytes, interop::CloudBlock& block) {
+  std::vector<DensityGrid> grids;
+  StackedGrids stack{.as_bytes = as_bytes};
+  VkExtent3D& size = stack.size;
   for (size_t i = 0; i < bodies.size(); ++i) {
     if (bodies[i].kind != "grid") continue;
     const DensityGrid& grid = grids.emplace_back(read_grid(bodies[i].file));
@@ -60,24 +66,28 @@ gpu::Image stack_grids(const app::Context& context, const std::vector<Cloud>& bo
     body.samples_x = grid.corners[0], body.samples_y = grid.corners[1], body.samples_z = grid.corners[2];
     body.first_slice = static_cast<int>(size.depth);
     body.largest_density = grid.largest;
-    fits_bytes = fits_bytes && grid.largest <= 1.0f;
+    stack.as_bytes = stack.as_bytes && grid.largest <= 1.0f;
     size.width = std::max(size.width, static_cast<uint32_t>(grid.corners[0]));
     size.height = std::max(size.height, static_cast<uint32_t>(grid.corners[1]));
     size.depth += static_cast<uint32_t>(grid.corners[2]);
   }
-  std::vector<float> texels(size_t{size.width} * size.height * size.depth, 0.0f);
+  stack.texels.assign(size_t{size.width} * size.height * size.depth, 0.0f);
   size_t slice = 0;
   for (const DensityGrid& grid : grids)
     for (int k = 0; k < grid.corners[2]; ++k, ++slice)
       for (int j = 0; j < grid.corners[1]; ++j)
         std::copy_n(&grid.density[(static_cast<size_t>(k) * grid.corners[1] + j) * grid.corners[0]], grid.corners[0],
-                    &texels[(slice * size.height + j) * size.width]);
-  if (!fits_bytes) return upload(context.device, "cloud grids", VK_FORMAT_R32_SFLOAT, size, texels, true);
-  std::vector<uint8_t> bytes;
-  for (const float density : texels) bytes.push_back(static_cast<uint8_t>(std::lround(density * 255.0f)));
-  return upload(context.device, "cloud grids", VK_FORMAT_R8_UNORM, size, bytes, true);
+                    &stack.texels[(slice * size.height + j) * size.width]);
+  return stack;
 }
 // [/stack]
+
+gpu::Image upload_grids(const gpu::Device& device, const StackedGrids& stack) {
+  if (!stack.as_bytes) return upload(device, "cloud grids", VK_FORMAT_R32_SFLOAT, stack.size, stack.texels, true);
+  std::vector<uint8_t> bytes;
+  for (const float density : stack.texels) bytes.push_back(static_cast<uint8_t>(std::lround(density * 255.0f)));
+  return upload(device, "cloud grids", VK_FORMAT_R8_UNORM, stack.size, bytes, true);
+}
 
 // When files were written, so that an edited one is read again.
 std::string file_times(const std::vector<Cloud>& bodies) {
@@ -192,16 +202,21 @@ app::Effect clouds() {
     interop::CloudBlock block = make_cloud_block(offered.bodies, context.scene.planet);
     offered.kinds = kinds_of(offered.bodies), offered.ceiling_km = block.ceiling_km;
     offered.constants = {{"CLOUD_KINDS", offered.kinds}};
-    const auto nothing = [&](bool is_3d) {  // a volume of one slice could not be told from a map
-      const uint32_t slices = is_3d ? 2 : 1;
-      return builder.graph.add_filled(
-          is_3d ? "no volume" : "no map",
-          upload(device, "nothing", VK_FORMAT_R32_SFLOAT, {1, 1, slices}, std::vector<float>(slices, 0.0f), is_3d));
-    };
     const bool noise = has_noise(offered.bodies), grid = (offered.kinds & interop::kCloudGrid) != 0;
-    const graph::Resource no_volume = !noise || !grid ? nothing(true) : 0, no_map = noise ? 0 : nothing(false);
-    offered.grids =
-        grid ? builder.graph.add_filled("cloud grids", stack_grids(context, offered.bodies, block)) : no_volume;
+    // Made when a pass reads it. A texel where nothing is; a volume of one slice could not be told from a map.
+    const auto add = [&](const char* name, std::shared_ptr<StackedGrids> stack) {
+      const graph::ImageInfo info{.size = {stack->size.width, stack->size.height}, .depth = stack->size.depth};
+      return builder.graph.add_filled(name, info, [&device, stack] { return upload_grids(device, *stack); });
+    };
+    const StackedGrids empty{.size = {1, 1, 2}, .texels = {0.0f, 0.0f}};
+    const bool as_bytes = context.settings.choice("cloud.grid_format") == "bytes";
+    offered.grids = add(grid ? "cloud grids" : "no grids",
+                        std::make_shared<StackedGrids>(grid ? stack_grids(offered.bodies, as_bytes, block) : empty));
+    const graph::Resource no_volume = noise ? 0 : add("no volume", std::make_shared<StackedGrids>(empty));
+    const graph::Resource no_map =
+        noise ? 0
+              : builder.graph.add_filled("no map", upload(device, "no map", VK_FORMAT_R32_SFLOAT, {1, 1, 1},
+                                                          std::vector<float>{0.0f}, false));
     const NoiseTextures none{no_volume, no_volume, no_map};
     const NoiseTextures& textures = noise ? board.get<NoiseTextures>("noise textures") : none;
     offered.base = textures.base, offered.detail = textures.detail, offered.curl = textures.curl;

@@ -286,16 +286,14 @@ inline double altitude_above(const Planet& planet, double east_km, double north_
   return std::hypot(east_km, north_km, planet.ground_radius_km + up_km) - planet.ground_radius_km;
 }
 
-// A ball and a box stand in the tangent frame, which touches the ground at the scene's place and nowhere else.
+// A ball and a box stand in the tangent frame, which touches the ground at the scene's place only.
 template <typename F>
 void must_be_in_the_air(F& f, const Cloud& cloud, const Planet& planet) {
   const bool ball = cloud.kind == "sphere";
   const glm::dvec3 low{cloud.east_km, cloud.north_km, cloud.up_km}, size = ball ? glm::dvec3(0.0) : cloud.size_km;
   const double wide = ball ? cloud.radius_km : 0.0, highest_km = planet.top_radius_km - planet.ground_radius_km;
   const auto nearest = [](double from, double size_km) { return std::clamp(0.0, from, from + size_km); };
-  const auto farthest = [](double from, double size_km) {
-    return std::abs(from) > std::abs(from + size_km) ? from : from + size_km;
-  };
+  const auto farthest = [](double a, double side) { return std::abs(a) > std::abs(a + side) ? a : a + side; };
   const double lowest_km = altitude_above(planet, nearest(low.x, size.x), nearest(low.y, size.y), low.z) - wide;
   const double top_km = altitude_above(planet, farthest(low.x, size.x), farthest(low.y, size.y), low.z + size.z) + wide;
   f.must(lowest_km >= -1e-9, "up_km", fmt::format("a cloud that reaches {:g} km below the ground", -lowest_km),

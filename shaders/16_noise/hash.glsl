@@ -23,13 +23,11 @@ uvec4 hashed(ivec3 cell, uint seed) {
 float unit_float(uint bits) { return float(bits >> 8u) * (1.0 / 16777216.0); }
 // [/hash]
 
-// The cell that stands for this one where space repeats after `period` cells; also of negative cells.
-int wrapped(int cell, int period) {
-  int rest = cell % period;
-  return rest < 0 ? rest + period : rest;
-}
-ivec3 wrapped(ivec3 cell, int period) {
-  return ivec3(wrapped(cell.x, period), wrapped(cell.y, period), wrapped(cell.z, period));
-}
+// [wrapped]
+// The cell that stands for this one where space repeats after `period` cells, a power of two; also of negative cells, whose
+// remainder by % Vulkan leaves undefined.
+ivec3 wrapped(ivec3 cell, int period) { return cell & (period - 1); }
+ivec2 wrapped(ivec2 cell, int period) { return cell & (period - 1); }
+// [/wrapped]
 
 #endif

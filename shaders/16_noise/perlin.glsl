@@ -1,5 +1,5 @@
 // Perlin's gradient noise (Perlin 2002) in 2-D and 3-D, with its derivatives. Unit: one cell of the lattice; it repeats
-// after `period` cells. At every corner a gradient is drawn; the corner's plane g . (p - corner) is blended with the others'
+// after `period` cells, a power of two. At every corner a gradient is drawn; the corner's plane g . (p - corner) is blended with the others'
 // by the quintic 6 t^5 - 15 t^4 + 10 t^3, whose first two derivatives vanish at the corners.
 //
 // `precise` forbids the compiler to fuse a product and a sum: a fused one rounds once instead of twice, and the last bit
@@ -23,13 +23,16 @@ float blend(float a, float b, float t) {
   return value;
 }
 
+// Of the highest bit: products mix upwards, and the low bits of neighbouring cells are a little alike.
+float sign_of(uint bits) { return (bits & 0x80000000u) == 0u ? 1.0 : -1.0; }
+
 // [perlin]
 // One of the twelve midpoints of a cube's edges, each as likely: an axis has no part in it, the others have a sign.
 vec3 gradient(ivec3 corner, int period, uint seed) {
-  uint bits = hashed(wrapped(corner, period), seed).x;
-  float first = (bits & 1u) == 0u ? 1.0 : -1.0;
-  float second = (bits & 2u) == 0u ? 1.0 : -1.0;
-  uint without = ((bits >> 16u) * 3u) >> 16u;
+  uvec4 random = hashed(wrapped(corner, period), seed);
+  float first = sign_of(random.x);
+  float second = sign_of(random.y);
+  uint without = ((random.z >> 16u) * 3u) >> 16u;
   if (without == 0u) return vec3(0.0, first, second);
   return without == 1u ? vec3(first, 0.0, second) : vec3(first, second, 0.0);
 }
@@ -70,11 +73,11 @@ vec4 perlin(vec3 p, int period, uint seed) {
 
 // 2-D: eight directions of one length. (noise, d/dx, d/dy), within -1 ... 1.
 vec2 gradient(ivec2 corner, int period, uint seed) {
-  uint bits = hashed(ivec3(wrapped(corner.x, period), wrapped(corner.y, period), 0), seed).x;
-  float first = (bits & 1u) == 0u ? 1.0 : -1.0;
-  float second = (bits & 2u) == 0u ? 1.0 : -1.0;
-  if ((bits & 0x10000u) != 0u) return vec2(first, second);
-  return (bits & 0x20000u) != 0u ? vec2(first * 1.41421356, 0.0) : vec2(0.0, first * 1.41421356);
+  uvec4 random = hashed(ivec3(wrapped(corner, period), 0), seed);
+  float first = sign_of(random.x);
+  float second = sign_of(random.y);
+  float along = second < 0.0 ? 1.41421356 : 0.0;
+  return sign_of(random.z) > 0.0 ? vec2(first, second) : first * vec2(along, 1.41421356 - along);
 }
 
 vec4 plane(vec2 g, vec2 d) {

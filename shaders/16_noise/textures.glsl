@@ -9,7 +9,7 @@
 const int kBase = 0, kDetail = 1, kCurl = 2, kWeather = 3, kAlligator = 4;
 
 // [fbm]
-// Octaves, each twice as fine and `gain` times as strong as the one before, with a seed of its own: lattices never line up.
+// Octaves, each twice as fine and `gain` times as strong as the one before, with a seed of its own.
 // full: 1 over the sum of the strengths, so that the sum's range is that of one octave.
 struct Octaves {
   int count;
@@ -18,11 +18,17 @@ struct Octaves {
 };
 uint seed_of(uint seed, int octave) { return seed + uint(octave) * 0x9E3779B9u; }
 
+// Every corner of an octave's lattice is one of the next, and Perlin noise is 0 there: the sum of all would be, and the
+// corners would show as a grid. So each lattice is moved by a random part of a cell, a multiple of 1/256: exact in float.
+vec3 shift_of(uint seed) { return vec3(hashed(ivec3(-1), seed).xyz >> 24u) * (1.0 / 256.0); }
+
 vec4 perlin_fbm(vec3 p, int cells, Octaves octaves, uint seed) {
   precise vec4 sum = vec4(0.0);
   float strength = 1.0;
   for (int i = 0; i < octaves.count; i++, cells *= 2, strength *= octaves.gain) {
-    vec4 octave = perlin(p * float(cells), cells, seed_of(seed, i));
+    uint own_seed = seed_of(seed, i);
+    precise vec3 place = p * float(cells) + shift_of(own_seed);
+    vec4 octave = perlin(place, cells, own_seed);
     precise vec4 slopes = octave * vec4(1.0, vec3(float(cells)));  // per side of the texture
     sum = sum + strength * slopes;
   }
@@ -44,7 +50,9 @@ vec3 perlin_fbm(vec2 p, int cells, Octaves octaves, uint seed) {
   precise vec3 sum = vec3(0.0);
   float strength = 1.0;
   for (int i = 0; i < octaves.count; i++, cells *= 2, strength *= octaves.gain) {
-    vec3 octave = perlin(p * float(cells), cells, seed_of(seed, i));
+    uint own_seed = seed_of(seed, i);
+    precise vec2 place = p * float(cells) + shift_of(own_seed).xy;
+    vec3 octave = perlin(place, cells, own_seed);
     precise vec3 slopes = octave * vec3(1.0, vec2(float(cells)));
     sum = sum + strength * slopes;
   }
@@ -62,11 +70,12 @@ float worley_fbm(vec2 p, int cells, Octaves octaves, uint seed) {
 }
 
 // [perlin_worley]
-// Perlin's range 0 ... 1 pushed up to begin at the Worley noise: remap(perlin, 0, 1, worley, 1). The result is at least either
-// of them ("dilated"): Perlin's connected wisps, puffed up with Worley's domes.
+// Perlin's range 0 ... 1 pushed up to begin at the Worley noise: remap(perlin^2, 0, 1, worley, 1). The result is at least either
+// of them ("dilated"): Perlin's connected banks, puffed up with Worley's domes. Squared, because most of Perlin's numbers lie
+// near the middle, where they would drown the domes.
 float dilated(float perlin, float worley) {
   precise float low = 0.5 + 0.5 * perlin;  // from -1 ... 1
-  precise float value = worley + low * (1.0 - worley);
+  precise float value = worley + low * low * (1.0 - worley);
   return value;
 }
 // [/perlin_worley]
@@ -96,7 +105,7 @@ vec3 curl(vec3 p, int cells, Octaves octaves, uint seed) {
 // [recipes]
 vec4 base_texel(vec3 p, Octaves octaves, uint seed) {
   float low = perlin_fbm(p, 4, octaves, seed).x;
-  float domes = worley_fbm(p, 4, octaves, seed + 10u);
+  float domes = worley_fbm(p, 8, octaves, seed + 10u);
   return vec4(dilated(low, domes), inverted_worley(p * 8.0, 8, seed + 20u), inverted_worley(p * 16.0, 16, seed + 30u),
               inverted_worley(p * 32.0, 32, seed + 40u));
 }

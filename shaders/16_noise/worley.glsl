@@ -13,9 +13,8 @@
 #include "16_noise/hash.glsl"
 
 // [worley]
-// Square of the distance from p to the nearest point. It lies in this cell or one of the 26 around it: a point in this cell
-// is at most sqrt(3) away, and one two cells away at least 1, so in rare places (those without a point within 1) a farther
-// cell could hold a nearer one: the domes end there, and nothing is lost.
+// Square of the distance from p to the nearest point, at most 1. A point nearer than 1 lies in this cell or in one of the 26
+// around it. In a place without one the domes have ended, and it does not matter where the nearest is.
 float nearest_squared(vec3 p, int period, uint seed) {
   vec3 corner = floor(p);
   vec3 d = p - corner;
@@ -43,7 +42,7 @@ float inverted_worley(vec2 p, int period, uint seed) {
   float nearest = 1.0;
   for (int j = -1; j <= 1; j++)
     for (int i = -1; i <= 1; i++) {
-      uvec4 random = hashed(ivec3(wrapped(cell.x + i, period), wrapped(cell.y + j, period), 0), seed);
+      uvec4 random = hashed(ivec3(wrapped(cell + ivec2(i, j), period), 0), seed);
       precise vec2 to = vec2(unit_float(random.x), unit_float(random.y)) + vec2(i, j) - d;
       precise float squared = to.x * to.x + to.y * to.y;
       nearest = min(nearest, squared);

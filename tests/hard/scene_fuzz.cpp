@@ -23,11 +23,14 @@
 #include "common/error.hpp"
 #include "common/image/atomic_file.hpp"
 #include "tests/hard/scene_fields.hpp"
+#include "tests/hard/scene_pieces.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
 using welkin::Scene;
+using welkin::test::kExtremes;
+using welkin::test::kPieces;
 
 const fs::path kScenes = fs::path(__FILE__).parent_path().parent_path().parent_path() / "chapters/scenes";
 
@@ -38,104 +41,6 @@ template <typename List>
 const auto& any_of(const List& list) {
   return list[below(std::size(list))];
 }
-
-const char* const kExtremes[] = {"nan",
-                                 "-nan",
-                                 "inf",
-                                 "-inf",
-                                 "0",
-                                 "-0.0",
-                                 "-1",
-                                 "1e308",
-                                 "-1e308",
-                                 "1e309",
-                                 "5e-324",
-                                 "1e-400",
-                                 "9223372036854775807",
-                                 "-9223372036854775808",
-                                 "9223372036854775808",
-                                 "0x7fffffffffffffff",
-                                 "0.1e",
-                                 "1_000",
-                                 "1__0",
-                                 "00",
-                                 "1.",
-                                 ".5",
-                                 "+1",
-                                 "true",
-                                 "false",
-                                 "\"1\"",
-                                 "''",
-                                 "[]",
-                                 "{}",
-                                 "[1,2,3]",
-                                 "[1,[2],3]",
-                                 "[nan,nan,nan]",
-                                 "{a=1}",
-                                 "1979-05-27",
-                                 "07:32:00",
-                                 "90",
-                                 "180",
-                                 "360",
-                                 "-360",
-                                 "0.999",
-                                 "-0.999",
-                                 "0.9990000001",
-                                 "6360",
-                                 "1e6",
-                                 "\"now\"",
-                                 "\"today 25:00\"",
-                                 "\"2026-06-21T10:30:00\"",
-                                 "\"\\u0000\"",
-                                 "\"\\uD800\"",
-                                 "\"\"\"\n\"\"\"",
-                                 "\"draine\"",
-                                 "\"tent\""};
-const char* const kPieces[] = {"\n[clouds]\n",
-                               "\n[[cloud]]\nkind = \"layer\"\nbase_km = 1\ntop_km = 2\n",
-                               "\n[weather]\n",
-                               "kind = \"vdb\"\n",
-                               "phase = \"droplets\"\n",
-                               "\n[[medium]]\n",
-                               "\n[[view]]\n",
-                               "\n[sun]\n",
-                               "\n[settings]\n",
-                               "\n[planet]\n",
-                               "version = 2\n",
-                               "kind = \"mie\"\n",
-                               "name = \"v\"\n",
-                               "utc = \"now\"\n",
-                               "latitude_deg = 91\n",
-                               "\"mie.g\" = 0.5\n",
-                               "g = 2\n",
-                               "extinction_per_km = 0\n",
-                               "azimuth_from_sun_deg = -360\n",
-                               "a.b.c.d.e = 1\n",
-                               "[a.b.c]\n",
-                               "\"\"\"",
-                               "'''",
-                               "[[",
-                               "{",
-                               "}",
-                               "]",
-                               "#",
-                               "\r",
-                               "\r\n",
-                               "\t",
-                               "\\",
-                               "\"",
-                               "'",
-                               "=",
-                               ".",
-                               ",",
-                               "\xEF\xBB\xBF",
-                               "\xC2\x85",
-                               "\xE2\x80\xA8",
-                               "\xF4\x8F\xBF\xBF",
-                               "\xC0\x80",
-                               "\xFF",
-                               "\x1b[2J",
-                               "\x7f"};
 
 // Replaces one number of the text, if a random place hits one.
 void replace_number(std::string& text) {

@@ -18,7 +18,7 @@ MUTANTS = [
     ("the base where the top is", "17_cloud_shapes/spans.glsl",
      "spans.first = vec2(outer.enter_km, inner.enter_km);", "spans.first = vec2(inner.enter_km, inner.leave_km);", "truth: a layer from half a metre*"),
     ("a ray that goes on through the ground", "17_cloud_shapes/spans.glsl",
-     "return enter < 0.0 ? kNoEnd_km : enter;", "return kNoEnd_km;", "truth: a layer from half a metre*"),
+     "return enter < 0.0 ? kNoEnd_km : enter;", "return kNoEnd_km;", "hard: exactly on the base*"),
     ("a disc without its cone", "17_cloud_shapes/spans.glsl",
      "if (body.kind == kCloudDisc) {", "if (false) {", "truth: a disc is a shell*"),
     ("a cylinder for a cone", "17_cloud_shapes/spans.glsl",
