@@ -163,6 +163,7 @@ CloudLightPush cloud_light_push(const Settings& settings) {
 // [effects]
 app::Effect cloud_bounds() {
   app::Effect effect{.name = "cloud bounds", .chapter = 18};
+  effect.wanted = [](const Scene& scene, const Settings&) { return light_wanted(scene); };
   effect.declare = [](app::Builder& builder, app::Board& board) {
     const gpu::Device& device = builder.context.device;
     const Bounds bounds = bounds_of(board.get<CloudBodies>("clouds").bodies);

@@ -79,7 +79,8 @@ void main() {
     const float altitude = clamp(altitude_along(radius, ray.altitude_km, ray.mu, stops_at), 0.0, clouds.ceiling_km);
     const LightAround around = light_around(atmosphere, altitude, sun.z);
     const vec3 scattered = around.sun * light.radiance + around.sky * light.skylight.x + around.ground * light.skylight.y;
-    result = sky * exp(-light.tau) + sunlight.rgb * (scattered + (ray.mu > 0.0 ? around.sky : around.ground) * light.blurred);
+    // What kept its direction more or less is taken as unblurred: the sky behind a fringe is brighter at the horizon than in the mean.
+    result = sky * (exp(-light.tau) + light.blurred) + sunlight.rgb * scattered;
   }
   imageStore(target, pixel, vec4(result, 1.0));
 }
