@@ -12,6 +12,13 @@ namespace welkin {
 // .section_km, .slice_km.
 app::Effect cloud_picture();
 
+// A ray of --probe as shaders read it, in split precision, from where it comes down to the clouds: found in double. The
+// fourth components: altitude, cosine and sine to the vertical.
+struct CloudRayItem {
+  glm::vec4 origin, rest, direction, end;
+};
+CloudRayItem cloud_ray_item(const app::ProbeRay& ray, double ground_radius_km, double ceiling_km);
+
 // Optical depth of all clouds along rays, as the scene's place sees them: from position_km in the direction of each.
 std::vector<double> cloud_optical_depths(const app::Context& context, std::span<const app::ProbeRay> rays);
 

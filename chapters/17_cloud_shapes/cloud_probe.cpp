@@ -14,11 +14,6 @@ namespace {
 
 constexpr size_t kBatch = 1 << 16;
 
-// As probe.comp reads it.
-struct CloudRayItem {
-  glm::vec4 origin, rest, direction, end;
-};
-
 struct ProbePush {
   CloudMarchPush march;
   int32_t count;
@@ -28,35 +23,6 @@ struct CloudProbe {
   graph::Resource rays, results;
   std::shared_ptr<int32_t> count;
 };
-
-// [item]
-// The ray in split precision, from where it comes down to the clouds: found in double, as in chapter 05.
-CloudRayItem item_of(const app::ProbeRay& ray, double ground_radius_km, double ceiling_km) {
-  glm::dvec3 position = ray.position_km;
-  double altitude_km = std::max(app::altitude_km({.position_km = position}, ground_radius_km), 0.0);
-  const glm::dvec3 from_centre = position + glm::dvec3(0.0, 0.0, ground_radius_km);
-  const double r = glm::length(from_centre), along = glm::dot(from_centre, ray.direction);
-  const double closest = glm::length(glm::cross(from_centre, ray.direction)), top_km = ground_radius_km + ceiling_km;
-  double mu = along / r, sine = closest / r, before_km = 0.0;
-  if (altitude_km > ceiling_km && along < 0.0 && closest < top_km) {
-    const double root = std::sqrt((top_km - closest) * (top_km + closest));
-    before_km = (altitude_km - ceiling_km) * (r + top_km) / (root - along);
-    position += ray.direction * before_km;
-    mu = -root / top_km, sine = closest / top_km;
-  }
-  // Whether a ray that grazes the ground meets it, floats cannot say: from 36,000 km they know its tangent point to 2
-  // m.
-  double end_km = 1e9;
-  if (along < 0.0 && closest < ground_radius_km + 1e-9) {  // one that touches it, as double has it, meets it
-    const double root = std::sqrt(std::max((ground_radius_km - closest) * (ground_radius_km + closest), 0.0));
-    end_km = altitude_km * (r + ground_radius_km) / (root - along) - before_km;
-  }
-  if (before_km > 0.0) altitude_km = ceiling_km;
-  const glm::vec3 origin(position);
-  return {glm::vec4(origin, altitude_km), glm::vec4(position - glm::dvec3(origin), mu), glm::vec4(ray.direction, sine),
-          glm::vec4(std::max(end_km, 0.0), 0.0, 0.0, 0.0)};
-}
-// [/item]
 
 app::Effect probe_effect(size_t room) {
   app::Effect effect{.name = "cloud probe", .chapter = 17};
@@ -86,6 +52,35 @@ app::Effect probe_effect(size_t room) {
 
 }  // namespace
 
+// [item]
+// The ray in split precision, from where it comes down to the clouds: found in double, as in chapter 05.
+CloudRayItem cloud_ray_item(const app::ProbeRay& ray, double ground_radius_km, double ceiling_km) {
+  glm::dvec3 position = ray.position_km;
+  double altitude_km = std::max(app::altitude_km({.position_km = position}, ground_radius_km), 0.0);
+  const glm::dvec3 from_centre = position + glm::dvec3(0.0, 0.0, ground_radius_km);
+  const double r = glm::length(from_centre), along = glm::dot(from_centre, ray.direction);
+  const double closest = glm::length(glm::cross(from_centre, ray.direction)), top_km = ground_radius_km + ceiling_km;
+  double mu = along / r, sine = closest / r, before_km = 0.0;
+  if (altitude_km > ceiling_km && along < 0.0 && closest < top_km) {
+    const double root = std::sqrt((top_km - closest) * (top_km + closest));
+    before_km = (altitude_km - ceiling_km) * (r + top_km) / (root - along);
+    position += ray.direction * before_km;
+    mu = -root / top_km, sine = closest / top_km;
+  }
+  // Whether a ray that grazes the ground meets it, floats cannot say: from 36,000 km they know its tangent point to 2
+  // m.
+  double end_km = 1e9;
+  if (along < 0.0 && closest < ground_radius_km + 1e-9) {  // one that touches it, as double has it, meets it
+    const double root = std::sqrt(std::max((ground_radius_km - closest) * (ground_radius_km + closest), 0.0));
+    end_km = altitude_km * (r + ground_radius_km) / (root - along) - before_km;
+  }
+  if (before_km > 0.0) altitude_km = ceiling_km;
+  const glm::vec3 origin(position);
+  return {glm::vec4(origin, altitude_km), glm::vec4(position - glm::dvec3(origin), mu), glm::vec4(ray.direction, sine),
+          glm::vec4(std::max(end_km, 0.0), 0.0, 0.0, 0.0)};
+}
+// [/item]
+
 // [probe]
 std::vector<double> cloud_optical_depths(const app::Context& context, std::span<const app::ProbeRay> rays) {
   std::vector<double> depths(rays.size(), 0.0);
@@ -98,7 +93,7 @@ std::vector<double> cloud_optical_depths(const app::Context& context, std::span<
     const size_t count = std::min(room, rays.size() - first);
     const std::span<CloudRayItem> in = composition.graph().buffer(probe.rays).as<CloudRayItem>();
     for (size_t i = 0; i < count; ++i)
-      in[i] = item_of(rays[first + i], context.scene.planet.ground_radius_km, ceiling_km);
+      in[i] = cloud_ray_item(rays[first + i], context.scene.planet.ground_radius_km, ceiling_km);
     *probe.count = static_cast<int32_t>(count);
     composition.execute_once();
     const std::span<float> out = composition.graph().buffer(probe.results).as<float>();

@@ -31,12 +31,15 @@ Machine& machine() {
   return *machine;
 }
 
-const gpu::ComputePipeline& pipeline_of(const std::string& shader, const gpu::Specialization& specialization) {
+const gpu::ComputePipeline& pipeline_of(const std::string& shader, const gpu::Specialization& specialization,
+                                        bool has_table) {
   gpu::ComputePipeline& pipeline = machine().pipelines[{shader, specialization}];
-  if (pipeline.bindings.empty())
-    pipeline = gpu::create_compute_pipeline(
-        device(), shader, {{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}},
-        sizeof(uint32_t), specialization);
+  const size_t count = has_table ? 3 : 2;  // storage buffers: inputs, outputs, table
+  if (pipeline.bindings.size() != count) {
+    std::vector<gpu::Binding> bindings;
+    for (uint32_t slot = 0; slot < count; ++slot) bindings.push_back({slot, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER});
+    pipeline = gpu::create_compute_pipeline(device(), shader, bindings, sizeof(uint32_t), specialization);
+  }
   return pipeline;
 }
 
@@ -45,9 +48,10 @@ const gpu::ComputePipeline& pipeline_of(const std::string& shader, const gpu::Sp
 const gpu::Device& device() { return machine().device; }
 
 std::vector<float> evaluate(const std::string& shader, const std::vector<float>& inputs, size_t inputs_per_item,
-                            size_t outputs_per_item, const gpu::Specialization& specialization) {
+                            size_t outputs_per_item, const gpu::Specialization& specialization,
+                            const std::vector<float>& table) {
   const uint32_t count = static_cast<uint32_t>(inputs.size() / inputs_per_item);
-  const gpu::ComputePipeline& pipeline = pipeline_of(shader, specialization);
+  const gpu::ComputePipeline& pipeline = pipeline_of(shader, specialization, !table.empty());
   const gpu::DescriptorSet set = gpu::create_descriptor_set(device(), pipeline.set_layout, pipeline.bindings);
   const gpu::Buffer in = gpu::create_buffer(device(), "inputs", inputs.size() * sizeof(float),
                                             VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Where::upload);
@@ -56,6 +60,13 @@ std::vector<float> evaluate(const std::string& shader, const std::vector<float>&
   std::memcpy(in.mapped, inputs.data(), inputs.size() * sizeof(float));
   gpu::write_buffer(device(), set, 0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, in);
   gpu::write_buffer(device(), set, 1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, out);
+  gpu::Buffer shared;
+  if (!table.empty()) {
+    shared = gpu::create_buffer(device(), "table", table.size() * sizeof(float), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                                gpu::Where::upload);
+    std::memcpy(shared.mapped, table.data(), table.size() * sizeof(float));
+    gpu::write_buffer(device(), set, 2, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, shared);
+  }
   const gpu::CommandPool pool = gpu::create_command_pool(device());
   gpu::run_once(device(), pool, [&](VkCommandBuffer commands) {
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.handle);

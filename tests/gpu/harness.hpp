@@ -15,8 +15,10 @@ namespace welkin::test {
 const gpu::Device& device();
 
 // Items evaluated in one call: inputs.size() / inputs_per_item. Returns that many times outputs_per_item floats.
+// `table`: what all items read, at binding 2, where the shader has one.
 std::vector<float> evaluate(const std::string& shader, const std::vector<float>& inputs, size_t inputs_per_item,
-                            size_t outputs_per_item, const gpu::Specialization& specialization = {});
+                            size_t outputs_per_item, const gpu::Specialization& specialization = {},
+                            const std::vector<float>& table = {});
 
 // Reproducible uniform random numbers (PCG-XSH-RR 64/32): the same on every compiler, unlike std distributions.
 class Random {
