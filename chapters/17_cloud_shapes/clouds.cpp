@@ -138,7 +138,7 @@ std::vector<Knob> cloud_knobs() {
            .choices = {"exact", "march"}},
           {.name = "cloud.grid_steps",
            .unit = "steps",
-           .meaning = "of cloud.grid=march, a cell of the grid's shortest side",
+           .meaning = "of cloud.grid=march, for the shortest edge of a cell; 4096 at most along a ray",
            .minimum = 1,
            .maximum = 16,
            .initial = 2,

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <optional>
 #include <sstream>
+#include <vector>
 
 #include "common/error.hpp"
 #include "common/image/atomic_file.hpp"
@@ -16,17 +18,28 @@ namespace {
 constexpr size_t kTextBytes = 256, kMostCorners = 512, kMostBytes = kTextBytes + (size_t{1} << 27);
 constexpr const char* kMagic = "welkin-grid 1";
 
-// The three whole numbers after "corners", a line of the text; zeros if there are none.
-std::array<long, 3> corners_of(const std::string& text) {
+// The lines of the text that begin with a word, without it and the blanks about it.
+std::vector<std::string> lines_of(const std::string& text, const std::string& word) {
   std::istringstream lines(text);
-  std::array<long, 3> corners{};
+  std::vector<std::string> found;
   for (std::string line; std::getline(lines, line);) {
     std::istringstream words(line);
     std::string key, rest;
-    if (!(words >> key) || key != "corners") continue;
-    if (!(words >> corners[0] >> corners[1] >> corners[2]) || (words >> rest)) return {};
+    if (!(words >> key) || key != word) continue;
+    std::getline(words >> std::ws, rest);
+    found.push_back(rest.substr(0, rest.find_last_not_of(" \r") + 1));
   }
-  return corners;
+  return found;
+}
+
+// Three numbers and nothing else.
+template <typename T>
+std::optional<std::array<T, 3>> three(const std::string& text) {
+  std::istringstream words(text);
+  std::array<T, 3> numbers{};
+  std::string rest;
+  if (!(words >> numbers[0] >> numbers[1] >> numbers[2]) || (words >> rest)) return std::nullopt;
+  return numbers;
 }
 
 }  // namespace
@@ -36,13 +49,27 @@ DensityGrid read_grid(const std::filesystem::path& file) {
   static_assert(std::endian::native == std::endian::little, "samples are copied as they are");
   const std::string shown = one_line(file.string());
   const std::string bytes = read_file(file, kMostBytes);
-  if (!bytes.starts_with(kMagic) || bytes.size() < kTextBytes)
+  const std::string text = bytes.substr(0, kTextBytes);
+  const std::string first = text.substr(0, text.find('\n'));
+  if (bytes.size() < kTextBytes || first.substr(0, first.find_last_not_of(" \r") + 1) != kMagic)
     fail("grid file {}: accepted is a file that begins with 256 bytes of text, the first line \"{}\"", shown, kMagic);
-  const std::array<long, 3> corners = corners_of(bytes.substr(0, kTextBytes));
+  const auto the_only = [&](const char* word) {
+    const std::vector<std::string> lines = lines_of(text, word);
+    if (lines.size() != 1)
+      fail("grid file {}: {} lines \"{} …\" in its first 256 bytes; accepted is one", shown, lines.size(), word);
+    return lines.front();
+  };
+  const std::string corners_line = the_only("corners"), box_line = the_only("box_km");
+  const auto read = three<long>(corners_line);
   const auto good = [](long n) { return n >= 2 && n <= long{kMostCorners}; };
-  if (!std::all_of(corners.begin(), corners.end(), good))
-    fail("grid file {}: corners {} {} {}; accepted is a line \"corners nx ny nz\" of 2 to {} a side", shown, corners[0],
-         corners[1], corners[2], kMostCorners);
+  if (!read || !std::all_of(read->begin(), read->end(), good))
+    fail("grid file {}: corners {}; accepted is a line \"corners nx ny nz\" of 2 to {} a side", shown,
+         one_line(corners_line), kMostCorners);
+  const auto box = three<double>(box_line);
+  if (!box || !std::all_of(box->begin(), box->end(), [](double side) { return side > 0.0 && side < 1e6; }))
+    fail("grid file {}: box_km {}; accepted is a line \"box_km lx ly lz\" of lengths above 0", shown,
+         one_line(box_line));
+  const std::array<long, 3>& corners = *read;
   const size_t samples =
       static_cast<size_t>(corners[0]) * static_cast<size_t>(corners[1]) * static_cast<size_t>(corners[2]);
   if (bytes.size() != kTextBytes + samples * sizeof(float))

@@ -255,6 +255,9 @@ ProbeRay probe_ray(const Session& session, const CsvTable& table, size_t row, bo
 Exit run_probe(const Session& session) {
   const std::vector<std::string> header = read_csv(session.options.probe, {}).names;
   const bool tangent = std::find(header.begin(), header.end(), "east_km") != header.end();
+  if (tangent && std::find(header.begin(), header.end(), "altitude_km") != header.end())
+    fail("{}: columns east_km and altitude_km; accepted is one of two forms: {}; or {}", session.options.probe,
+         fmt::join(kFromAltitude, ", "), fmt::join(kInTangentFrame, ", "));
   const std::vector<std::string>& inputs = tangent ? kInTangentFrame : kFromAltitude;
   const CsvTable table = read_csv(session.options.probe, inputs);
   std::vector<ProbeRay> rays;

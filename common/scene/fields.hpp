@@ -316,9 +316,9 @@ void fields(F& f, Cloud& cloud, Scene& scene) {
   if (!sphere && !grid) {
     f("base_km", cloud.base_km, in_air, "altitude of its lower boundary", {.required = true});
     f("top_km", cloud.top_km, in_air, "altitude of its upper boundary", {.required = true});
-    f.must(!f.reading || cloud.base_km < cloud.top_km, "top_km",
+    f.must(!f.reading || cloud.base_km + 0.000999 < cloud.top_km, "top_km",
            fmt::format("a cloud from {} km up to {} km", cloud.base_km, cloud.top_km),
-           "accepted is a top above the base");
+           "accepted is a top at least a metre above the base");
   }
   if (disc || sphere || grid) {
     const char* where = disc     ? "arc at the base from the scene's place to its axis"

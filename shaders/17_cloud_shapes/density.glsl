@@ -110,7 +110,8 @@ float covered(float shape, float coverage, float solid) {
   return above(shape, threshold);
 }
 
-// Wisps at the base, where the detail itself is cut out, and billows above, where what lies between its lumps is.
+// At the layer's base the density is cut where the detail is high, which leaves wisps; above a tenth of the layer where it
+// is low, which leaves billows.
 float eroded(float density, float detail, float height, float strength) {
   float cut = clamp(mix(detail, 1.0 - detail, clamp(height * 10.0, 0.0, 1.0)) * 1.6 - 0.16, 0.0, 1.0);
   return above(density, strength * cut);
@@ -138,7 +139,8 @@ float noise_density(CloudBody body, float ground_radius_km, CloudPoint point, in
     }
     density = eroded(density, detail_noise(fine).w, height, 0.6 * type.billows);
   }
-  // Droplets grow as air rises: less water at the base; and rain clouds hold more.
+  // Droplets grow as air rises: less water at the layer's base (clouds that begin higher up are not thinned); and rain
+  // clouds hold more.
   return density * mix(0.5, 1.0, clamp(4.0 * height, 0.0, 1.0)) * (0.7 + 0.3 * weather.w);
 }
 // [/noise_density]

@@ -70,7 +70,8 @@ float grid_column_exact(CloudBody body, CloudRay ray, vec2 span) {
 
 // [steps]
 // Steps for a span. Of noise `steps` across the body's thickness, so that a step is as long for every ray; a span more
-// than eight times as long takes longer ones. Of a grid so many for each cell of its shortest side.
+// than eight times as long takes longer ones. Of a grid grid_steps for the shortest edge
+// of a cell; 4096 at most: longer columns take longer steps.
 int march_steps(CloudBody body, float length_km, CloudMarch march) {
   if (body.kind != kCloudGrid)
     return clamp(int(ceil(float(march.steps) * length_km / (body.top_km - body.base_km))), 1, 8 * march.steps);

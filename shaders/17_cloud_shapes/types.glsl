@@ -64,7 +64,8 @@ CloudType cloud_type(float type) {
 // [/types]
 
 // [profile]
-// 0 ... 1 at a relative height. `tops`: how high the cloud grows at this place, 0 ... 1 of what its type allows.
+// 0 ... 1 at a relative height. `tops`: how high the cloud grows at this place: 0, to 55 % of
+// what its type allows; 1, to all of it.
 float height_profile(vec4 profile, float height, float tops) {
   float h = profile.x + (height - profile.x) / (0.55 + 0.45 * tops);
   float rises = clamp((h - profile.x) / max(profile.y - profile.x, 1.0e-4), 0.0, 1.0);

@@ -20,6 +20,7 @@ TEST_CASE("table of errors of grids", "[.][17_table]") {
     for (const auto& [rung, knobs] :
          {std::pair<std::string, std::vector<std::pair<std::string, std::string>>>{"exact", {{"cloud.grid", "exact"}}},
           {"1 step a cell", {{"cloud.grid_steps", "1"}}},
+          {"2 steps a cell", {{"cloud.grid_steps", "2"}}},
           {"4 steps a cell", {{"cloud.grid_steps", "4"}}},
           {"1 step a cell in bytes", {{"cloud.grid_format", "bytes"}, {"cloud.grid_steps", "1"}}}}) {
       const GridScore score = grid_score(name, knobs);

@@ -129,7 +129,7 @@ std::vector<app::ProbeRay> rays_through(size_t count) {
                           : i % 4 == 2 ? random.uniform(95.0, 175.0)
                                        : random.uniform(120.0, 178.0);
     app::ProbeRay ray = ray_up(h, zenith, random.uniform(0.0, 360.0));
-    ray.position_km.x = random.uniform(-20.0, 20.0);  // the tangent plane leaves the ground by 31 m at most
+    ray.position_km.x = random.uniform(-20.0, 20.0);  // the tangent plane leaves the ground by 63 m at most
     ray.position_km.y = random.uniform(-20.0, 20.0);
     rays.push_back(ray);
   }

@@ -76,9 +76,9 @@ TEST_CASE("clouds: each refusal names file, line, column and what is accepted", 
         "cloud.kind = 'vdb' at f:5:8: accepted is one of \"layer\", \"disc\", \"sphere\", \"grid\", \"noise\"");
   CHECK_THAT(refused("[[cloud]]\n"), Catch::StartsWith("no kind in cloud at f:4:1: accepted is one of \"layer\""));
   CHECK(cloud("layer", "base_km = 4\ntop_km = 1.5\n") ==
-        "a cloud from 4 km up to 1.5 km at f:7:10: accepted is a top above the base");
+        "a cloud from 4 km up to 1.5 km at f:7:10: accepted is a top at least a metre above the base");
   CHECK(cloud("layer", "base_km = 2\ntop_km = 2\n") ==
-        "a cloud from 2 km up to 2 km at f:7:10: accepted is a top above the base");
+        "a cloud from 2 km up to 2 km at f:7:10: accepted is a top at least a metre above the base");
   CHECK(cloud("layer", "base_km = -0.5\n") == "cloud.base_km = -0.5 at f:6:11: accepted is a number from 0 to 100 km");
   CHECK(cloud("layer", "base_km = 1\ntop_km = 101\n") ==
         "cloud.top_km = 101 at f:7:10: accepted is a number from 0 to 100 km");
