@@ -10,7 +10,8 @@ import zlib
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ.get("WELKIN_BUILD", ROOT / "build"))
-CHAPTERS = sorted(path.name for path in (ROOT / "chapters").glob("[0-9][0-9]_*"))
+CHAPTERS = sorted(path.name for path in (ROOT / "chapters").glob("[0-9][0-9]_*")
+                  if (ROOT / "docs" / "chapters" / f"{path.name}.md").exists())  # without its page it is not whole yet
 
 
 class WelkinCase(unittest.TestCase):
