@@ -14,6 +14,7 @@ for table in "$out"/knobs_*.json; do
 done
 explain() { "$(program "$1")" --explain --scene noon --size 320x180 --frames 5 | sed -n '/^effects:$/,/^declared:$/p' | sed '$d'; }
 explain 08 >$out/08_explain.txt  # which effects are on, how often each pass ran, which barriers there were
+"$(program 17)" --explain --scene fair --size 320x180 --frames 5 | sed -n '/^effects:$/,/^declared:$/p' | sed '$d' >$out/17_explain.txt
 for number in 09 10 11; do explain $number | grep -v '^  before' >$out/${number}_explain.txt; done
 WELKIN_BUILD=$build python3 tests/hard/mutants.py 05 --write $out/mutants.txt >/dev/null
 for table in 09_sweep_gpu 10_sweep_gpu 11_sweep_gpu; do
@@ -29,7 +30,7 @@ start() {
 { echo cold && start && echo warm && start; } >$out/16_start.txt
 "$(program 16)" --headless --size 32x18 --frames 1 --output "$cache/picture.png" | sed -n '1s/.* · //p' >>$out/16_start.txt
 rm -r "$cache"
-for table in 10_sweep_gpu 11_sweep_gpu; do
+for table in 10_sweep_gpu 11_sweep_gpu 17_sweep_gpu; do
   python3 docs/plot.py $out/$table.csv docs/pictures/$table.svg | tail -n 1 >$out/"${table/sweep_gpu/factor_of_two_gpu}".txt
 done
 python3 - <<'PYTHON' >$out/11_tables.txt

@@ -230,7 +230,14 @@ class Window(WelkinCase):
     def open_and_look(self, *arguments, **environment):
         self.open(*arguments, **environment)
         self.key("h")
-        self.view = rgb(self.screen("view.png"))
+        shots = [rgb(self.screen("view.png"))]  # until the panel is gone and the light meter has settled
+
+        def settled():
+            shots.append(rgb(self.screen("view.png")))
+            return shots[-1] == shots[-2]
+        time.sleep(0.5)
+        self.assertTrue(self.in_time(settled), "the view comes to rest")
+        self.view = shots[-1]
         self.key("h")
 
     def test_a_picture_that_cannot_be_written_is_told(self):
