@@ -42,4 +42,6 @@ MUTANTS = [
      "+ from_sky * open", "", "truth: pictures with terrain against paths that end on it"),
     ("the march before terrain loses its last slice", "11_aerial_perspective/aerial.glsl",
      "for (int k = 0; k < slices; k++) {", "for (int k = 0; k < slices - 1; k++) {", "truth: pictures with terrain against paths that end on it"),
+    ("a sign's board turned from the scene's place", "11_aerial_perspective/signs.glsl",
+     "sign.side = vec3(place_km.y / d, place_km.x / -d, 0.0);", "sign.side = vec3(place_km.x / d, place_km.y / d, 0.0);", "a ray meets a sign*"),
 ]

@@ -39,4 +39,6 @@ MUTANTS = [
      "return vec3(origin_km.x - wrap_km * floor(origin_km.x / wrap_km),", "return vec3(origin_km.x,", "hard: a position is wrapped around exactly*"),
     ("from space, lengths counted from the camera", "17_cloud_shapes/spans.glsl",
      "if (ray.altitude_km <= ceiling_km) return moved;", "return moved;", "hard: from space a cloud is counted*"),
+    ("what is behind a layer is dimmed by half its optical depth", "17_cloud_shapes/picture.comp",
+     "const float share = 1.0 - exp(-all.x)", "const float share = 1.0 - exp(-0.5 * all.x)", "a picture behind a layer*"),
 ]
