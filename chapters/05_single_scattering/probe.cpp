@@ -49,12 +49,12 @@ MarchRay march_ray(const app::ProbeRay& ray, const Planet& planet) {
 }
 // [/ray]
 
-void add_probe_pass(app::Builder& builder, const ProbeBuffers& probe, graph::Step step) {
+void add_probe_pass(app::Builder& builder, graph::Resource results, graph::Step step) {
   graph::Pass pass{.name = "probe", .changed = [](const app::Frame&) { return true; }};
   pass.steps.push_back(std::move(step));
-  pass.steps.push_back({.accesses = {{probe.results, gpu::kHostRead}}, .record = [](const graph::Recorder&) {}});
+  pass.steps.push_back({.accesses = {{results, gpu::kHostRead}}, .record = [](const graph::Recorder&) {}});
   builder.graph.add(std::move(pass));
-  builder.graph.set_output(probe.results);
+  builder.graph.set_output(results);
 }
 
 ProbeRun::ProbeRun(const app::Context& context, std::vector<app::Effect> effects, size_t most)

@@ -29,8 +29,8 @@ struct ProbeBuffers {
   std::shared_ptr<Range> range;  // how many rays are in the buffers now
 };
 
-// Adds the pass "probe": the step, which writes probe.results, and the barrier after which the host may read them.
-void add_probe_pass(app::Builder& builder, const ProbeBuffers& probe, graph::Step step);
+// Adds the pass "probe": the step, which writes the results, and the barrier after which the host may read them.
+void add_probe_pass(app::Builder& builder, graph::Resource results, graph::Step step);
 
 // A graph of effects that computes the light along rays. The last effect adds its pass with add_probe_pass().
 class ProbeRun {

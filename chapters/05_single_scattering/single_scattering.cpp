@@ -80,7 +80,7 @@ std::vector<app::ProbeResult> probe_single_scattering(const app::Context& contex
   march.declare = [](app::Builder& builder, app::Board& board) {
     const AirBlock& air = board.get<AirBlock>("the air");
     const ProbeBuffers& probe = board.get<ProbeBuffers>("the rays of a probe");
-    add_probe_pass(builder, probe,
+    add_probe_pass(builder, probe.results,
                    {.shader = "05_single_scattering/probe.comp",
                     .constants = joined(air.constants, march_constants(builder.context)),
                     .bindings = {{"Air", air.block}, {"Rays", probe.rays}, {"Results", probe.results}},

@@ -56,7 +56,7 @@ std::vector<app::ProbeResult> probe_table_march(const app::Context& context, std
       r.push(StepsPush{context.settings.integer("view.steps"), range->count, {}});
       r.dispatch(static_cast<uint32_t>(range->count + 63) / 64);
     };
-    add_probe_pass(builder, probe, std::move(step));
+    add_probe_pass(builder, probe.results, std::move(step));
   };
   return ProbeRun(context, {air(), transmittance_table(), std::move(march)}, rays.size()).run(rays);
 }

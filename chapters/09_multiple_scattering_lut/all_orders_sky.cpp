@@ -69,7 +69,7 @@ std::vector<app::ProbeResult> probe_all_orders(const app::Context& context, std:
         r.push(MarchProbePush{view_steps, range->count, {}});
       r.dispatch(static_cast<uint32_t>(range->count + 63) / 64);
     };
-    add_probe_pass(builder, probe, std::move(step));
+    add_probe_pass(builder, probe.results, std::move(step));
   };
   return ProbeRun(context, {air(), multiple_scattering_table(), std::move(march)}, rays.size()).run(rays);
 }

@@ -90,7 +90,7 @@ static app::Effect probe_look_up() {
     const AirBlock& air = board.get<AirBlock>("the air");
     const SkyViewTable& table = board.get<SkyViewTable>("a sky view table");
     const ProbeBuffers& probe = board.get<ProbeBuffers>("the rays of a probe");
-    add_probe_pass(builder, probe,
+    add_probe_pass(builder, probe.results,
                    {.shader = "10_sky_view_lut/probe.comp",
                     .constants = joined(air.constants, {{"SKY_VIEW_UNIT", table.unit}}),
                     .bindings = {{"Air", air.block},

@@ -119,10 +119,9 @@ void ViewChange::note(const app::Frame& frame) {
   position_km_ = frame.position_km, fresh_ = false;
 }
 
-// Makes an image that passes sample and fills it with rows of texels, once, before any frame.
-static gpu::Image uploaded_map(const gpu::Device& device, const char* name, VkFormat format, VkExtent2D size,
-                               std::span<const std::byte> texels) {
-  gpu::Image image = gpu::create_image(device, name, size, format, kMapUsage);
+gpu::Image filled_image(const gpu::Device& device, const char* name, VkFormat format, VkExtent2D size, uint32_t depth,
+                        std::span<const std::byte> texels) {
+  gpu::Image image = gpu::create_image(device, name, size, format, kMapUsage, depth);
   const gpu::Buffer staging =
       gpu::create_buffer(device, "staging", texels.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Where::upload);
   std::memcpy(staging.mapped, texels.data(), texels.size());
@@ -130,7 +129,7 @@ static gpu::Image uploaded_map(const gpu::Device& device, const char* name, VkFo
   gpu::run_once(device, pool, [&](VkCommandBuffer commands) {
     gpu::image_barrier(commands, image.handle, {}, gpu::kTransferWrite);
     const VkBufferImageCopy copy{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
-                                 .imageExtent = {size.width, size.height, 1}};
+                                 .imageExtent = {size.width, size.height, std::max(depth, 1u)}};
     vkCmdCopyBufferToImage(commands, staging.handle, image.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
     gpu::image_barrier(commands, image.handle, gpu::kTransferWrite, gpu::kSampledRead);
   });
@@ -143,8 +142,8 @@ static TerrainMaps upload_maps(app::Builder& builder) {
   const app::Context& context = builder.context;
   const auto add = [&](const char* name, VkFormat format, int width, int height, const auto& texels) {
     const VkExtent2D size{static_cast<uint32_t>(width), static_cast<uint32_t>(height)};
-    return builder.graph.add_filled(name,
-                                    uploaded_map(context.device, name, format, size, std::as_bytes(std::span(texels))));
+    return builder.graph.add_filled(
+        name, filled_image(context.device, name, format, size, 0, std::as_bytes(std::span(texels))));
   };
   TerrainMap map = make_terrain_map(*context.scene.terrain);
   check_fits_planet(*context.scene.terrain, context.scene.planet.ground_radius_km);

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "chapters/11_aerial_perspective/terrain_map.hpp"
@@ -34,6 +35,10 @@ struct TerrainShadows {
 app::Effect terrain();
 // Pass "terrain shadows": runs when the sun has moved.
 app::Effect terrain_shadows();
+
+// Makes an image that passes sample and fills it with rows of texels, once, before any frame. 3-D if depth is above 0.
+gpu::Image filled_image(const gpu::Device& device, const char* name, VkFormat format, VkExtent2D size, uint32_t depth,
+                        std::span<const std::byte> texels);
 
 // Tells whether a frame's view differs from the one noted last. Time and frame number do not count.
 class ViewChange {

@@ -2,39 +2,22 @@
 #include "chapters/17_cloud_shapes/clouds.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <glm/gtc/packing.hpp>
 #include <memory>
+#include <span>
 
+#include "chapters/11_aerial_perspective/relief.hpp"
 #include "chapters/16_noise/noise.hpp"
 #include "chapters/17_cloud_shapes/grid_file.hpp"
-#include "common/image/atomic_file.hpp"
 #include "common/image/png.hpp"
 #include "common/scene/one_line.hpp"
 
 namespace welkin {
 namespace {
-
-constexpr VkImageUsageFlags kUsage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-
-// Makes an image on the device and fills it, once, before any frame.
-template <typename T>
-gpu::Image upload(const gpu::Device& device, const char* name, VkFormat format, VkExtent3D size,
-                  const std::vector<T>& texels, bool is_3d) {
-  gpu::Image image = gpu::create_image(device, name, {size.width, size.height}, format, kUsage, is_3d ? size.depth : 0);
-  const gpu::Buffer staging = gpu::create_buffer(device, "staging", texels.size() * sizeof(T),
-                                                 VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Where::upload);
-  std::memcpy(staging.mapped, texels.data(), staging.bytes);
-  const gpu::CommandPool pool = gpu::create_command_pool(device);
-  gpu::run_once(device, pool, [&](VkCommandBuffer commands) {
-    gpu::image_barrier(commands, image.handle, {}, gpu::kTransferWrite);
-    const VkBufferImageCopy copy{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1}, .imageExtent = size};
-    vkCmdCopyBufferToImage(commands, staging.handle, image.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
-    gpu::image_barrier(commands, image.handle, gpu::kTransferWrite, gpu::kSampledRead);
-  });
-  return image;
-}
 
 bool has_noise(const std::vector<Cloud>& bodies) { return (kinds_of(bodies) & interop::kCloudNoise) != 0; }
 
@@ -83,10 +66,13 @@ StackedGrids stack_grids(const std::vector<Cloud>& bodies, bool as_bytes, intero
 // [/stack]
 
 gpu::Image upload_grids(const gpu::Device& device, const StackedGrids& stack) {
-  if (!stack.as_bytes) return upload(device, "cloud grids", VK_FORMAT_R32_SFLOAT, stack.size, stack.texels, true);
+  const auto filled = [&](VkFormat format, std::span<const std::byte> texels) {
+    return filled_image(device, "cloud grids", format, {stack.size.width, stack.size.height}, stack.size.depth, texels);
+  };
+  if (!stack.as_bytes) return filled(VK_FORMAT_R32_SFLOAT, std::as_bytes(std::span(stack.texels)));
   std::vector<uint8_t> bytes;
   for (const float density : stack.texels) bytes.push_back(static_cast<uint8_t>(std::lround(density * 255.0f)));
-  return upload(device, "cloud grids", VK_FORMAT_R8_UNORM, stack.size, bytes, true);
+  return filled(VK_FORMAT_R8_UNORM, std::as_bytes(std::span(bytes)));
 }
 
 // When files were written, so that an edited one is read again.
@@ -94,6 +80,7 @@ std::string file_times(const std::vector<Cloud>& bodies) {
   std::string times;
   for (const Cloud& cloud : bodies)
     for (const std::string& file : {cloud.file, cloud.weather}) {
+      if (file.empty() || file == "procedural") continue;
       std::error_code missing;
       const auto written = std::filesystem::last_write_time(file, missing);
       if (!missing) times += fmt::format("{} {} ", file, written.time_since_epoch().count());
@@ -160,11 +147,12 @@ CloudMarchPush cloud_march(const Settings& settings) {
 WeatherMap read_weather_map(const std::filesystem::path& file) {
   const std::string shown = one_line(file.string());
   const Image8 picture = image::read_png8(file);
-  const std::string head = read_file(file, size_t{1} << 30).substr(0, 26);  // of 8 bits and RGBA: as IHDR says
-  if (head.size() < 26 || head[24] != 8 || head[25] != 6 || picture.width != picture.height || picture.width < 2 ||
-      picture.width > 4096)
+  std::array<char, 26> head{};  // signature and IHDR, which end with the bits of a channel and the kind of colour
+  std::ifstream(file, std::ios::binary).read(head.data(), head.size());
+  const bool is_rgba8 = head[24] == 8 && head[25] == 6;
+  if (!is_rgba8 || picture.width != picture.height || picture.width < 2 || picture.width > 4096)
     fail("weather map {}: {} x {} pixels{}; accepted is a square PNG of 2 to 4096 pixels a side, 8-bit RGBA", shown,
-         picture.width, picture.height, head.size() < 26 || (head[24] == 8 && head[25] == 6) ? "" : ", not 8-bit RGBA");
+         picture.width, picture.height, is_rgba8 ? "" : ", not 8-bit RGBA");
   WeatherMap map{.size = static_cast<int>(picture.width)};
   for (size_t i = 0; i < picture.rgba.size(); i += 4)
     map.texels.push_back(glm::packHalf4x16(
@@ -213,10 +201,11 @@ app::Effect clouds() {
     offered.grids = add(grid ? "cloud grids" : "no grids",
                         std::make_shared<StackedGrids>(grid ? stack_grids(offered.bodies, as_bytes, block) : empty));
     const graph::Resource no_volume = noise ? 0 : add("no volume", std::make_shared<StackedGrids>(empty));
+    const float nothing = 0.0f;
     const graph::Resource no_map =
         noise ? 0
-              : builder.graph.add_filled("no map", upload(device, "no map", VK_FORMAT_R32_SFLOAT, {1, 1, 1},
-                                                          std::vector<float>{0.0f}, false));
+              : builder.graph.add_filled("no map", filled_image(device, "no map", VK_FORMAT_R32_SFLOAT, {1, 1}, 0,
+                                                                std::as_bytes(std::span(&nothing, 1))));
     const NoiseTextures none{no_volume, no_volume, no_map};
     const NoiseTextures& textures = noise ? board.get<NoiseTextures>("noise textures") : none;
     offered.base = textures.base, offered.detail = textures.detail, offered.curl = textures.curl;
@@ -228,9 +217,9 @@ app::Effect clouds() {
     } else {
       const WeatherMap map = read_weather_map(painted);
       const uint32_t side = static_cast<uint32_t>(map.size);
-      offered.weather = builder.graph.add_filled(
-          "weather map",
-          upload(device, "weather map", VK_FORMAT_R16G16B16A16_SFLOAT, {side, side, 1}, map.texels, false));
+      offered.weather =
+          builder.graph.add_filled("weather map", filled_image(device, "weather map", VK_FORMAT_R16G16B16A16_SFLOAT,
+                                                               {side, side}, 0, std::as_bytes(std::span(map.texels))));
     }
     gpu::Buffer buffer = gpu::create_buffer(device, "cloud bodies", sizeof block, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
                                             gpu::Where::upload);

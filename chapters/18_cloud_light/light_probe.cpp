@@ -3,6 +3,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 
+#include "chapters/05_single_scattering/probe.hpp"
 #include "chapters/10_sky_view_lut/sky.hpp"
 #include "chapters/16_noise/noise.hpp"
 #include "chapters/18_cloud_light/cloud_light.hpp"
@@ -63,11 +64,7 @@ app::Effect probe_effect(size_t rays, size_t invocations) {
     step.record = [push = probe.push](const graph::Recorder& r) {
       r.push(*push).dispatch(static_cast<uint32_t>(push->invocations + 63) / 64);
     };
-    graph::Pass pass{.name = "cloud light probe", .changed = [](const app::Frame&) { return true; }};
-    pass.steps.push_back(std::move(step));
-    pass.steps.push_back({.accesses = {{probe.results, gpu::kHostRead}}, .record = [](const graph::Recorder&) {}});
-    builder.graph.add(std::move(pass));
-    builder.graph.set_output(probe.results);
+    add_probe_pass(builder, probe.results, std::move(step));
     board.offer(std::move(probe));
   };
   return effect;

@@ -46,7 +46,9 @@ void explain(const Session& session, const Program& program, Renderer& renderer,
   else
     for (const Constituent& effect : constituents(session.scene))
       fmt::print("  {:<14} {:<4} {}\n", effect.name, effect.on ? "on" : "off", effect.why);
-  if (session.chapter.number < 17 && (!session.scene.clouds.empty() || session.scene.weather))
+  const bool draws_clouds =
+      std::ranges::any_of(session.chapter.effects, [](const Effect& effect) { return effect.name == "clouds"; });
+  if (!draws_clouds && (!session.scene.clouds.empty() || session.scene.weather))
     fmt::print("  {:<14} {:<4} {}\n", "clouds", "off", "in the scene, drawn from chapter 17 on");
   fmt::print("passes:\n");
   for (const gpu::PassTime& pass : renderer.pass_times())

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cstdlib>
-#include <stdexcept>
 
 #include "common/image/csv.hpp"
 #include "tests/gpu/10_sky.hpp"
@@ -15,12 +13,6 @@ using namespace welkin;
 using namespace welkin::test;
 
 namespace {
-
-std::string directory() {
-  const char* path = std::getenv("WELKIN_TABLE");
-  if (path == nullptr) throw std::runtime_error("WELKIN_TABLE names no directory");
-  return path;
-}
 
 std::vector<std::string> comments(const std::string& what) {
   return {what, "device: " + device().candidate().name, "driver: " + device().candidate().driver,
@@ -43,7 +35,7 @@ TEST_CASE("table of errors by altitude", "[.][10_table]") {
                       fmt::format("{:.2g}", quantile(errors, 0.95)), fmt::format("{:.2g}", quantile(errors, 0.99))});
     }
   }
-  write_csv(directory() + "/10_altitudes.csv",
+  write_csv(table_directory() + "/10_altitudes.csv",
             comments("relative difference of the table's sky from the direct march: 4 suns (20, 80, 91, 97 degrees) x "
                      "160 rays, half of them close to the horizon, a quarter close to the sun"),
             {"altitude_km", "size", "median", "p95", "p99"}, rows);
@@ -76,7 +68,7 @@ TEST_CASE("table of errors against Monte Carlo", "[.][10_table]") {
       }
     }
   write_csv(
-      directory() + "/10_monte_carlo.csv",
+      table_directory() + "/10_monte_carlo.csv",
       comments("relative error against Monte Carlo, tests/data/multiple_scattering_*.csv, ground albedo 0.3, rows with "
                "a standard error below 1 %; target: sun above -4 degrees, rays more than 0.5 degrees from the horizon"),
       {"planet", "rows", "method", "count", "median", "p95", "worst"}, rows);
@@ -101,7 +93,7 @@ TEST_CASE("table of errors by the samples along a texel's ray", "[.][10_table]")
     }
     lines.push_back(line);
   }
-  write_csv(directory() + "/10_steps.csv",
+  write_csv(table_directory() + "/10_steps.csv",
             comments("relative error in percent of the sky by samples of the first order along a texel's ray: rows of "
                      "tests/data/multiple_scattering_*_cs.csv as in 10_monte_carlo.csv, target"),
             {"steps", "median_percent_earth", "p95_percent_earth", "worst_percent_earth", "median_percent_alien",

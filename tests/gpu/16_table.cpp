@@ -5,7 +5,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
-#include <stdexcept>
 
 #include "common/image/csv.hpp"
 #include "tests/gpu/16_texture.hpp"
@@ -14,12 +13,6 @@ using namespace welkin;
 using namespace welkin::test;
 
 namespace {
-
-std::string directory() {
-  const char* path = std::getenv("WELKIN_TABLE");
-  if (path == nullptr) throw std::runtime_error("WELKIN_TABLE names no directory");
-  return path;
-}
 
 std::vector<std::string> comments(const std::string& what) {
   return {what, "the same bits on every device", "source: WELKIN_TABLE=docs/generated gpu_tests \"[16_table]\""};
@@ -74,7 +67,7 @@ TEST_CASE("table of what the textures hold", "[.][16_table]") {
                       fmt::format("{}", tenth), fmt::format("{}", middle), fmt::format("{}", most)});
     }
   }
-  write_csv(directory() + "/16_textures.csv",
+  write_csv(table_directory() + "/16_textures.csv",
             comments("sides of 64 (base, alligator), 32, 128 and 256 texels; below the frequency of 10, 50, 90 % lies "
                      "that much of the power, in waves a side"),
             {"texture", "channel", "least", "greatest", "mean", "deviation", "tenth", "middle", "ninety"}, rows);
@@ -144,7 +137,7 @@ TEST_CASE("table of formats", "[.][16_table]") {
     add(name, full.bytes(), numbers_of(recipe, made_words(recipe)));
   }
   write_csv(
-      directory() + "/16_formats.csv",
+      table_directory() + "/16_formats.csv",
       comments("bytes of the base texture of 128^3 with mips; difference of a texel's first three numbers from those "
                "of 16 bits; block-compressed: at best, computed and not made"),
       {"format", "bytes", "worst", "rms"}, rows);

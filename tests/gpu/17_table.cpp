@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
-#include <cstdlib>
-#include <stdexcept>
 
 #include "common/image/csv.hpp"
 #include "tests/gpu/17_clouds.hpp"
@@ -13,8 +11,7 @@ using namespace welkin;
 using namespace welkin::test;
 
 TEST_CASE("table of errors of grids", "[.][17_table]") {
-  const char* directory = std::getenv("WELKIN_TABLE");
-  if (directory == nullptr) throw std::runtime_error("WELKIN_TABLE names no directory");
+  const std::string directory = table_directory();
   std::vector<std::vector<std::string>> rows;
   for (const char* name : {"blob", "cumulus", "deck"})
     for (const auto& [rung, knobs] :
@@ -27,7 +24,7 @@ TEST_CASE("table of errors of grids", "[.][17_table]") {
       rows.push_back({name, rung, fmt::format("{}", score.rows), fmt::format("{:.2g}", score.median_depth),
                       fmt::format("{:.2g}", score.worst_depth), fmt::format("{:.2g}", score.worst_t)});
     }
-  write_csv(std::string(directory) + "/17_truth.csv",
+  write_csv(directory + "/17_truth.csv",
             {"relative errors of optical depths along the rays of tests/data/cloud_*.csv, and the largest error of T",
              "device: " + device().candidate().name, "driver: " + device().candidate().driver,
              "source: WELKIN_TABLE=docs/generated gpu_tests \"[17_table]\""},

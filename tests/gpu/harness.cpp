@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <map>
+#include <stdexcept>
 #include <utility>
 
 namespace welkin::test {
@@ -78,6 +79,12 @@ std::vector<float> evaluate(const std::string& shader, const std::vector<float>&
   std::vector<float> outputs(count * outputs_per_item);
   std::memcpy(outputs.data(), out.mapped, outputs.size() * sizeof(float));
   return outputs;
+}
+
+std::string table_directory() {
+  const char* path = std::getenv("WELKIN_TABLE");
+  if (path == nullptr) throw std::runtime_error("WELKIN_TABLE names no directory");
+  return path;
 }
 
 uint32_t Random::next() {

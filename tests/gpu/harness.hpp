@@ -20,6 +20,9 @@ std::vector<float> evaluate(const std::string& shader, const std::vector<float>&
                             size_t outputs_per_item, const gpu::Specialization& specialization = {},
                             const std::vector<float>& table = {});
 
+// The directory that $WELKIN_TABLE names, for tables of the book. Throws without it.
+std::string table_directory();
+
 // Reproducible uniform random numbers (PCG-XSH-RR 64/32): the same on every compiler, unlike std distributions.
 class Random {
  public:
